@@ -1,0 +1,1 @@
+"""ratd: rotational disruption of porous dust aggregates."""

@@ -1,0 +1,40 @@
+"""The one place that holds the flags of every compiled function.
+
+numba's own cache notices a change of the file that a function stands in, but not of the files that it calls into.
+The cache folder is therefore keyed by the content of all sources of the package: a change anywhere compiles anew.
+"""
+
+import hashlib
+import os
+from functools import partial
+from pathlib import Path
+
+import numba
+import numpy as np
+
+
+def _source_digest():
+    digest = hashlib.sha256()
+    root = Path(__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode())
+        digest.update(path.read_bytes())
+    digest.update(f"numba {numba.__version__} numpy {np.__version__}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _cache_root():
+    """Folder for compiled code: RATD_CACHE, else the user's cache folder."""
+    if "RATD_CACHE" in os.environ:
+        return Path(os.environ["RATD_CACHE"])
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "ratd"
+
+
+numba.config.CACHE_DIR = str(_cache_root() / f"numba-{_source_digest()}")
+
+# error_model="numpy": a division by zero gives inf, as in numpy; the check for it would block vectorisation.
+# contract: a*b + c may become one fused instruction. Nothing else is relaxed, so results repeat bit for bit.
+FLAGS = dict(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
+
+jit = partial(numba.njit, **FLAGS)

@@ -1,0 +1,1 @@
+"""Contact laws: pure functions of one contact."""
