@@ -1,1 +1,37 @@
-"""ratd: rotational disruption of porous dust aggregates."""
+"""ratd: rotational disruption of porous dust aggregates.
+
+>>> import ratd
+>>> grain = ratd.grow("BAM2", a_eff=200e-9, material="q-S", seed=7)
+>>> run = ratd.spin_up(grain, angular_acceleration=1e14)
+>>> ratd.disruption(run)
+"""
+
+from importlib import import_module
+
+# Loaded on first use: drawing a figure must not wait for compiled code, and a source hash must not follow this file.
+_HOME = {
+    "Grain": "grain",
+    "InputError": "errors",
+    "FileError": "errors",
+    "MATERIALS": "materials",
+    "Material": "materials",
+    "cut_bound": "bound",
+    "disruption": "marks",
+    "fit_ensemble": "ensemble",
+    "grow": "growth",
+    "mix": "materials",
+    "spin_up": "spinup",
+}
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name):
+    if name in _HOME:
+        value = getattr(import_module(f"ratd.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'ratd' has no attribute {name!r}")
+
+
+def __dir__():
+    return __all__

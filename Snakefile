@@ -1,0 +1,81 @@
+# The pipeline: grow grains, spin them up, find where each is disrupted, fit the ensemble, draw the figures.
+#
+#     snakemake --cores 2                                      the full paper
+#     snakemake --cores 2 --configfile config/quick.yaml       minutes
+#
+# Settings of Snakemake itself are in profiles/default, which it finds by its name.
+import sys
+from pathlib import Path
+
+from snakemake.utils import min_version
+
+from ratd import jobs
+from ratd.config import check
+from ratd.errors import InputError
+
+min_version("9.27")
+
+
+configfile: "config/config.yaml"
+
+
+try:
+    PLAN = check(config)
+except InputError as error:
+    sys.exit(str(error))
+
+jobs.release_stale_locks()
+CODE = jobs.code_hashes(Path(workflow.basedir, "workflow", "scripts"))
+
+
+pathvars:
+    results=PLAN.results,
+
+
+wildcard_constraints:
+    drive=PLAN.pattern("drives"),
+    material=PLAN.pattern("materials"),
+    type=PLAN.pattern("types"),
+    size=PLAN.pattern("sizes"),
+    seeds=PLAN.pattern("blocks"),
+
+
+include: "workflow/rules/grains.smk"
+include: "workflow/rules/spinup.smk"
+include: "workflow/rules/disruption.smk"
+include: "workflow/rules/ensemble.smk"
+include: "workflow/rules/figures.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        "<results>/config.yaml",
+        rules.tables.input,
+        rules.figures.input,
+
+
+rule write_config:
+    output:
+        "<results>/config.yaml",
+    log:
+        "<results>/logs/write_config.log",
+    benchmark:
+        "<results>/benchmarks/write_config.tsv"
+    conda:
+        "workflow/envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        code=CODE["write_config"],
+        settings=PLAN.config,
+    message:
+        "Write down the config"
+    script:
+        "workflow/scripts/write_config.py"
+
+
+onsuccess:
+    jobs.tidy(PLAN.results)

@@ -1,0 +1,439 @@
+"""The config of the pipeline: checked as a whole before any job starts, and turned into cells, blocks and settings.
+
+The layout stands in `config/schema/config.schema.yaml`, where each key says in words what it may hold. Everything
+that a file depends on becomes the settings of its job, and nothing else does: a change of the figures' settings
+concerns the figures only, and a further seed concerns no other block.
+"""
+
+import math
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import jsonschema
+import yaml
+
+from ratd.errors import InputError
+from ratd.growth import RadiusDistribution, smallest_a_eff
+from ratd.materials import MATERIALS, Material, mix
+from ratd.units import GPA, MJ_PER_M2, NM, PS
+
+# 10.0 is no whole number here: it would not do as the length of a list
+_Validator = jsonschema.validators.extend(
+    jsonschema.Draft202012Validator,
+    type_checker=jsonschema.Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda checker, value: isinstance(value, int) and not isinstance(value, bool)
+    ),
+)
+
+_MATERIAL_KEYS = {
+    "surface_energy_mJ_m2": ("surface_energy", MJ_PER_M2),
+    "youngs_modulus_GPa": ("youngs_modulus", GPA),
+    "poisson_number": ("poisson_number", 1.0),
+    "density_kg_m3": ("density", 1.0),
+    "critical_rolling_displacement_nm": ("critical_rolling_displacement", NM),
+    "viscous_time_ps": ("viscous_time", PS),
+}
+"""Key in materials.yaml -> attribute of `Material` and its unit in SI."""
+
+
+def read_yaml(path):
+    """Content of a YAML file.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    object
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, and the line where it is not YAML.
+    """
+    try:
+        return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        place = getattr(error, "problem_mark", None)
+        where = f"line {place.line + 1}: " if place else ""
+        raise InputError(f"{path}: {where}is not YAML ({getattr(error, 'problem', error)})") from error
+
+
+def merge(base, over):
+    """Config with some keys replaced, as Snakemake does with `--configfile`: mappings key by key, lists as a whole.
+
+    Parameters
+    ----------
+    base, over : dict
+
+    Returns
+    -------
+    dict
+    """
+    result = dict(base)
+    for key, value in over.items():
+        both = isinstance(value, dict) and isinstance(base.get(key), dict)
+        result[key] = merge(base[key], value) if both else value
+    return result
+
+
+def check_layout(content, layout, where):
+    """Raise an error unless some content is laid out as a JSON schema says.
+
+    Parameters
+    ----------
+    content : object
+        Of a YAML file.
+    layout : dict
+        The JSON schema; each part has a `description` that says what is allowed.
+    where : str
+        Name of the content, for the message.
+
+    Raises
+    ------
+    InputError
+        One sentence with the key, its value and what is allowed.
+    """
+    errors = _Validator(layout).iter_errors(content)
+    for error in sorted(errors, key=lambda error: [str(part) for part in error.absolute_path]):
+        raise InputError(f"{where}: {_sentence(error, layout)}")
+
+
+def _sentence(error, layout):
+    """What is wrong, from an error of jsonschema."""
+    key = _dotted(error.absolute_path)
+    if error.validator == "additionalProperties":
+        unknown = sorted(set(error.instance) - set(error.schema["properties"]), key=str)[0]
+        inside = f" in {key}" if key else ""
+        return f"the key {unknown!r}{inside} is unknown; allowed: {', '.join(error.schema['properties'])}"
+    if error.validator == "required":
+        missing = next(name for name in error.validator_value if name not in error.instance)
+        part = error.schema.get("properties", {}).get(missing, error.schema)
+        if "$ref" in part:
+            part = layout["$defs"][part["$ref"].rpartition("/")[2]]
+        return f"the key {f'{key}.{missing}' if key else missing} is missing; allowed: {part['description']}"
+    return f"{key or 'it'} is {error.instance!r}; allowed: {error.schema.get('description', error.message)}"
+
+
+def _dotted(path):
+    """A place in nested mappings and lists, such as ``snapshots.grains[0].seed``."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return text.removeprefix(".")
+
+
+def read_materials(path, layout):
+    """Materials of Table 2 together with those of a file.
+
+    Parameters
+    ----------
+    path : path-like
+        Such as `config/materials.yaml`.
+    layout : dict
+        Its JSON schema.
+
+    Returns
+    -------
+    dict of str to Material
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the material and the key.
+    """
+    content = read_yaml(path)
+    check_layout(content, layout, str(path))
+    table = dict(MATERIALS)
+    for name, entry in (content or {}).items():
+        if name in MATERIALS:
+            raise InputError(f"{path}: {name!r} is a material of Table 2 already; allowed: any other name")
+        try:
+            if "mix" in entry:
+                table[name] = mix(name, entry["mix"], table)
+            else:
+                values = {_MATERIAL_KEYS[key][0]: value * _MATERIAL_KEYS[key][1] for key, value in entry.items()}
+                table[name] = Material(name, **values)
+        except InputError as error:
+            raise InputError(f"{path}: {name}: {error}") from error
+    return table
+
+
+def load(*paths, schemas="config/schema"):
+    """Plan of some config files, each of which stands over those before it.
+
+    Parameters
+    ----------
+    *paths : path-like
+    schemas : path-like, optional
+        Folder of the JSON schemas.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        See `check`.
+    """
+    merged = {}
+    for path in paths:
+        content = read_yaml(path)
+        if not isinstance(content, dict):
+            raise InputError(f"{path}: is {content!r}; allowed: a mapping of the keys in {schemas}/config.schema.yaml")
+        merged = merge(merged, content)
+    return check(merged, schemas)
+
+
+def check(config, schemas="config/schema"):
+    """Check a config as a whole.
+
+    Parameters
+    ----------
+    config : dict
+        The merged config.
+    schemas : path-like, optional
+        Folder of the JSON schemas.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        One sentence that names the first key that is wrong, and what is allowed.
+    """
+    schemas = Path(schemas)
+    config = dict(config)
+    _check_finite(config, ())
+    check_layout(config, read_yaml(schemas / "config.schema.yaml"), "config")
+    materials = read_materials(config["materials_file"], read_yaml(schemas / "materials.schema.yaml"))
+    plan = Plan(config, materials)
+    for k, name in enumerate(config["materials"]):
+        if name not in materials:
+            raise InputError(
+                f"config: materials[{k}] is {name!r}; "
+                f"allowed: {', '.join(materials)}, or a material added to {config['materials_file']}"
+            )
+    try:
+        radii = RadiusDistribution(**plan.radii)
+    except InputError as error:
+        raise InputError(f"config: growth: {error}") from error
+    for k, size in enumerate(config["sizes_nm"]):
+        for kind in config["types"]:
+            smallest = smallest_a_eff(kind, radii) / NM
+            # the size itself has no room for different radii: all monomers would have to be of the smallest one
+            if not size > smallest * (1 + 1e-9):
+                raise InputError(
+                    f"config: sizes_nm[{k}] is {size!r}; allowed: above {math.ceil(100 * smallest) / 100:g} nm, "
+                    f"the size of the fewest monomers that {kind} is made of"
+                )
+    for drive in config["drives"]:
+        laws = {key: plan.spin_up_of(drive)[key] for key in ("epsilon", "angular_acceleration")}
+        if sum(value is not None for value in laws.values()) != 1:
+            where = "spin_up and literal together" if drive == "literal" else "spin_up"
+            raise InputError(f"config: {where} give {laws}; allowed: a number for one of them and null for the other")
+    for k, grain in enumerate(config["snapshots"]["grains"]):
+        plan.find_cell(grain, f"snapshots.grains[{k}]")
+        if grain["seed"] not in plan.seeds:
+            raise InputError(
+                f"config: snapshots.grains[{k}].seed is {grain['seed']}; allowed: {plan.seeds[0]} to {plan.seeds[-1]}"
+            )
+    figure4, figure6 = config["figures"]["figure4"], config["figures"]["figure6"]
+    if figure4 is not None:
+        plan.find_cell(figure4, "figures.figure4")
+    if figure6 is not None:
+        plan.find(figure6["material"], "materials", "figures.figure6.material")
+        for k, size in enumerate(figure6["sizes_nm"]):
+            plan.find(size, "sizes_nm", f"figures.figure6.sizes_nm[{k}]")
+    return plan
+
+
+def _check_finite(value, path):
+    """YAML has .nan and .inf, which no key may hold and which pass for numbers."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            _check_finite(part, (*path, key))
+    elif isinstance(value, list):
+        for k, part in enumerate(value):
+            _check_finite(part, (*path, k))
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"config: {_dotted(path)} is {value}; allowed: finite numbers")
+
+
+def size_label(size):
+    """A size in nm as it stands in the name of a folder, e.g. ``"50"`` or ``"62.5"``."""
+    return f"{size:.10g}"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A checked config, and what follows from it.
+
+    Attributes
+    ----------
+    config : dict
+        The merged config.
+    materials : dict of str to Material
+        Table 2 and the materials of the user.
+    """
+
+    config: dict
+    materials: dict
+
+    @property
+    def results(self):
+        """Folder of all results."""
+        return self.config["results"].rstrip("/") or "/"
+
+    @property
+    def sizes(self):
+        """Sizes as they stand in names of folders, list of str, the largest first."""
+        return [size_label(size) for size in sorted(self.config["sizes_nm"], reverse=True)]
+
+    @property
+    def seeds(self):
+        """All seeds, a range."""
+        first = self.config["seeds"]["first"]
+        return range(first, first + self.config["seeds"]["number"])
+
+    @property
+    def blocks(self):
+        """Blocks of seeds as they stand in names of files, list of str such as ``"0-9"``."""
+        step = self.config["block_size"]
+        return [f"{part[0]}-{part[-1]}" for part in (self.seeds[k : k + step] for k in range(0, len(self.seeds), step))]
+
+    @property
+    def cells(self):
+        """All (material, type, size), the size as in `sizes`."""
+        return [
+            (material, kind, size)
+            for size in self.sizes
+            for material in self.config["materials"]
+            for kind in self.config["types"]
+        ]
+
+    @property
+    def figures(self):
+        """Numbers of the figures to draw, list of int."""
+        return [number for number in (2, 4, 6, 7) if self.config["figures"].get(f"figure{number}", ()) is not None]
+
+    def pattern(self, name):
+        """Regular expression of what a wildcard of Snakemake can be.
+
+        Parameters
+        ----------
+        name : str
+            "sizes", "blocks", or a key of the config that holds a list of names.
+
+        Returns
+        -------
+        str
+        """
+        values = getattr(self, name) if name in ("sizes", "blocks") else self.config[name]
+        return "|".join(re.escape(value) for value in values)
+
+    def figure4_files(self, path):
+        """Files of all blocks of the cell that figure 4 shows.
+
+        Parameters
+        ----------
+        path : str
+            With the fields ``{material}``, ``{type}``, ``{size}``, ``{seeds}``.
+
+        Returns
+        -------
+        list of str
+            Empty where the figure is left out.
+        """
+        cell = self.config["figures"]["figure4"]
+        if cell is None:
+            return []
+        names = {"material": cell["material"], "type": cell["type"], "size": size_label(cell["size_nm"])}
+        return [path.format(**names, seeds=block) for block in self.blocks]
+
+    @property
+    def radii(self):
+        """Arguments of `ratd.growth.RadiusDistribution` [m]."""
+        growth = self.config["growth"]
+        return {
+            "median": growth["median_nm"] * NM,
+            "sigma_ln": growth["sigma_ln"],
+            "smallest": growth["smallest_nm"] * NM,
+            "largest": growth["largest_nm"] * NM,
+        }
+
+    def find(self, value, key, where):
+        """Raise InputError unless a value is one of those that the ensemble has under a key."""
+        if value not in self.config[key]:
+            raise InputError(
+                f"config: {where} is {value!r}; allowed: one of the {key}, {', '.join(map(str, self.config[key]))}"
+            )
+
+    def find_cell(self, cell, where):
+        """Raise InputError unless the ensemble has a cell, a dict with material, type and size_nm."""
+        for name, key in (("material", "materials"), ("type", "types"), ("size_nm", "sizes_nm")):
+            self.find(cell[name], key, f"{where}.{name}")
+
+    def material(self, name):
+        """Constants of a material, dict of the arguments of `ratd.materials.Material`."""
+        return asdict(self.materials[name])
+
+    def grow(self, material, kind, size):
+        """Settings of the growth of one cell."""
+        return {
+            "material": self.material(material),
+            "type": kind,
+            "a_eff": float(size) * NM,
+            "radii": self.radii,
+            "migration": self.config["growth"]["migration"],
+        }
+
+    def spin_up_of(self, drive):
+        """Part of the config on the spin-up, for one drive."""
+        return self.config["spin_up"] | (self.config["literal"] if drive == "literal" else {})
+
+    def spin_up(self, drive, material, kind, size, block):
+        """Settings of the spin-up of one block."""
+        first, last = (int(seed) for seed in block.split("-"))
+        cell = (material, kind, size)
+        snapshots = [
+            grain["seed"]
+            for grain in self.config["snapshots"]["grains"]
+            if (grain["material"], grain["type"], size_label(grain["size_nm"])) == cell
+            and first <= grain["seed"] <= last
+        ]
+        return {
+            "drive": drive,
+            **self.spin_up_of(drive),
+            "snapshot_seeds": sorted(set(snapshots)),
+            "snapshot_every": self.config["snapshots"]["every"] if snapshots else 0,
+        }
+
+    def ensemble(self, drive):
+        """Settings of the statistics and the fit."""
+        ensemble = self.config["ensemble"]
+        return {
+            "drive": drive,
+            "materials": {name: self.material(name) for name in self.config["materials"]},
+            "mean_monomer_radius": [
+                value if value == "own" else value * NM for value in ensemble["mean_monomer_radius_nm"]
+            ],
+            "bootstrap": ensemble["bootstrap"],
+            "confidence": ensemble["confidence"],
+            "seed": ensemble["seed"],
+        }
+
+    def figure(self, number, drive):
+        """Settings of one figure; for figures 4 and 6 with their own part of the config, sizes in m."""
+        own = self.config["figures"].get(f"figure{number}") or {}
+        if "sizes_nm" in own:
+            own = own | {"sizes": [size * NM for size in own["sizes_nm"]]}
+        materials = {name: self.material(name) for name in self.config["materials"]}
+        return {"drive": drive, "materials": materials, **own}

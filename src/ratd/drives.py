@@ -1,0 +1,254 @@
+"""What moves the aggregate: the law omega(t) and the equations of motion of a monomer in the turning frame.
+
+`prescribed` is the consistent model: an outer torque keeps the largest fragment turning at omega(t). `literal` is what
+the paper prints: fictitious forces only, no torque, no frame terms for the spins (physics.md Sects. 5 and 8).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ratd._accelerate import jit
+from ratd.engine.layout import (
+    DRIVEN, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, INERTIA, INV_INERTIA, INV_MASS, MASS, ROW, TORQUE_X, TORQUE_Y,
+    TORQUE_Z, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
+)  # fmt: skip
+from ratd.errors import InputError
+
+OMEGA_RAT = 3e10
+"""Terminal angular velocity [rad/s] of Eq. 24 (Sect. 7 of the paper)."""
+
+DRIVES = ("prescribed", "literal")
+SPIN_UP_LAWS = ("constant-epsilon", "exponential")
+CONSTANT_EPSILON, EXPONENTIAL = range(len(SPIN_UP_LAWS))
+CORIOLIS = ("exact", "explicit")
+
+_ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
+
+
+class Drive(NamedTuple):
+    """Parameters of a drive, as compiled code takes them.
+
+    Attributes
+    ----------
+    law : int
+        `CONSTANT_EPSILON` or `EXPONENTIAL` (Eq. 24).
+    epsilon : float
+        (d omega/dt)/omega^2 of the constant-epsilon law.
+    omega_1 : float
+        Below it the constant-epsilon law is linear [rad/s].
+    acceleration : float
+        Initial d omega/dt of Eq. 24, i.e. omega_RAT/tau_drag [rad/s2].
+    torque : bool
+        Whether the outer torque acts on the largest fragment.
+    explicit_coriolis : bool
+        Whether the Coriolis force is taken at the old velocity; else the velocity is turned exactly.
+    spin_terms : bool
+        Whether the spins feel the turning of the frame.
+    """
+
+    law: int
+    epsilon: float
+    omega_1: float
+    acceleration: float
+    torque: bool
+    explicit_coriolis: bool
+    spin_terms: bool
+
+
+def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriolis=None):
+    """Drive from the words that a user gives.
+
+    Parameters
+    ----------
+    name : {"prescribed", "literal"}
+    omega_1 : float
+        Angular velocity [rad/s] up to which the constant-epsilon law is linear.
+    epsilon : float, optional
+        For the constant-epsilon law.
+    angular_acceleration : float, optional
+        Initial d omega/dt [rad/s2] of Eq. 24. Exactly one of the two is given.
+    coriolis : {"exact", "explicit"}, optional
+        For `literal` only; "explicit" when not given, as printed.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    InputError
+    """
+    if name not in DRIVES:
+        raise InputError(f"drive is {name!r}; allowed are {', '.join(DRIVES)}.")
+    if (epsilon is None) == (angular_acceleration is None):
+        raise InputError("Exactly one of epsilon and angular_acceleration is needed to say how fast the grain spins up.")
+    for word, value in (("epsilon", epsilon), ("angular_acceleration", angular_acceleration)):
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise InputError(f"{word} is {value!r}; it must be a number above 0.")
+    literal = name == "literal"
+    if coriolis is None:
+        coriolis = "explicit" if literal else "exact"
+    if coriolis not in CORIOLIS:
+        raise InputError(f"coriolis is {coriolis!r}; allowed are {', '.join(CORIOLIS)}.")
+    return Drive(
+        law=CONSTANT_EPSILON if angular_acceleration is None else EXPONENTIAL,
+        epsilon=float(epsilon or 0.0),
+        omega_1=float(omega_1),
+        acceleration=float(angular_acceleration or 0.0),
+        torque=not literal,
+        explicit_coriolis=coriolis == "explicit",
+        spin_terms=not literal,
+    )
+
+
+AT_REST = Drive(EXPONENTIAL, 0.0, 1.0, 0.0, False, False, False)
+"""A frame that does not turn: for the relaxation before the spin-up, and for free aggregates."""
+
+
+@jit
+def angular_velocity(drive, time):
+    """omega [rad/s] and d omega/dt [rad/s2] at a time [s].
+
+    Parameters
+    ----------
+    drive : Drive
+    time : float
+        Since the start from rest [s].
+
+    Returns
+    -------
+    omega, domega : float
+
+    Notes
+    -----
+    Exponential: Eqs. 24 and 26 with tau_drag = omega_RAT/acceleration. Constant epsilon:
+    d omega/dt = epsilon max(omega, omega_1)^2, i.e. linear up to omega_1 and 1/omega = 1/omega_1 - epsilon (t - t_1)
+    above (physics.md Sect. 5).
+    """
+    if drive.law == EXPONENTIAL:
+        rate = drive.acceleration / OMEGA_RAT
+        return -OMEGA_RAT * math.expm1(-time * rate), drive.acceleration * math.exp(-time * rate)
+    start = 1.0 / (drive.epsilon * drive.omega_1)  # when omega_1 is reached
+    if time <= start:
+        slope = drive.epsilon * drive.omega_1**2
+        return slope * time, slope
+    omega = 1.0 / max(1.0 / drive.omega_1 - drive.epsilon * (time - start), 1.0 / (2.0 * OMEGA_RAT))
+    return omega, drive.epsilon * omega**2
+
+
+@jit
+def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
+    """Move all monomers by one step in the frame that turns with omega about z, and clear the forces.
+
+    Velocities stand half a step behind the positions (leapfrog).
+
+    Parameters
+    ----------
+    monomer, force : arrays
+        See `State`.
+    n : int
+        Number of monomers.
+    dt : float
+        Step [s].
+    omega, domega : float
+        Angular velocity [rad/s] of the frame and its rate of change [rad/s2], at the time of the positions.
+    unwind : float
+        Rigid rotation [rad/s] to be taken out of the largest fragment, minus its angular momentum about z in the
+        frame over its moment of inertia, after the last step.
+    drive : Drive
+
+    Returns
+    -------
+    angular_momentum : float
+        Of the largest fragment about z, in the frame, after the kick [kg m2 s-1].
+    inertia : float
+        Moment of inertia of the largest fragment about z [kg m2].
+    fastest : float
+        Greatest speed of any monomer in the frame [m/s].
+
+    Notes
+    -----
+    Eqs. 19-21, 29, 30 with the terms that physics.md Sect. 5 adds: the centrifugal force m omega^2 (x, y, 0), the
+    Coriolis force -2 m omega x v, the Euler force -m (d omega/dt) x X, their counterparts for the spin
+    (-I omega x w, -I d omega/dt), and for the largest fragment the body force m alpha x X with I alpha on the spin.
+    alpha is d omega/dt, which cancels the Euler force, plus what takes out the angular momentum that the fragment
+    had in the frame at the last step.
+
+    The exact treatment turns the velocity by the angle -2 omega dt between two half kicks (Boris 1970).
+    """
+    h = 0.5 * dt
+    square = omega * omega
+    cos_v = math.cos(2.0 * omega * dt)
+    sin_v = math.sin(2.0 * omega * dt)
+    cos_w = 1.0
+    sin_w = 0.0
+    spin_euler = 0.0
+    if drive.spin_terms:
+        cos_w = math.cos(omega * dt)
+        sin_w = math.sin(omega * dt)
+        spin_euler = -domega * dt
+    alpha = 0.0
+    back = 0.0
+    if drive.torque:
+        alpha = domega
+        back = unwind
+    two_omega_dt = 2.0 * omega * dt
+    angular_momentum = 0.0
+    inertia = 0.0
+    fastest = 0.0
+    for k in range(n):
+        r = np.uint64(k) * _ROW
+        q = np.uint64(k) * _FORCE_ROW
+        x = monomer[r + X]
+        y = monomer[r + Y]
+        driven = monomer[r + DRIVEN]
+        inv_mass = monomer[r + INV_MASS]
+        turn = alpha * driven - domega
+        ax = force[q + FORCE_X] * inv_mass + square * x - turn * y
+        ay = force[q + FORCE_Y] * inv_mass + square * y + turn * x
+        vx = monomer[r + VX]
+        vy = monomer[r + VY]
+        vz = monomer[r + VZ] + dt * force[q + FORCE_Z] * inv_mass
+        back_k = back * driven
+        if drive.explicit_coriolis:
+            vx, vy = vx + dt * ax + two_omega_dt * vy, vy + dt * ay - two_omega_dt * vx
+        else:
+            px = vx + h * ax
+            py = vy + h * ay
+            vx = cos_v * px + sin_v * py + h * ax
+            vy = cos_v * py - sin_v * px + h * ay
+        vx -= back_k * y
+        vy += back_k * x
+
+        inv_inertia = dt * monomer[r + INV_INERTIA]
+        ux = monomer[r + WX] + inv_inertia * force[q + TORQUE_X]
+        uy = monomer[r + WY] + inv_inertia * force[q + TORQUE_Y]
+        wx = cos_w * ux + sin_w * uy
+        wy = cos_w * uy - sin_w * ux
+        wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + spin_euler + (alpha * dt + back) * driven
+
+        mass = driven * monomer[r + MASS]
+        own = driven * monomer[r + INERTIA]
+        angular_momentum += mass * (x * vy - y * vx) + own * wz
+        inertia += mass * (x * x + y * y) + own
+        fastest = max(fastest, vx * vx + vy * vy + vz * vz)
+
+        monomer[r + VX] = vx
+        monomer[r + VY] = vy
+        monomer[r + VZ] = vz
+        monomer[r + WX] = wx
+        monomer[r + WY] = wy
+        monomer[r + WZ] = wz
+        monomer[r + X] = x + dt * vx
+        monomer[r + Y] = y + dt * vy
+        monomer[r + Z] += dt * vz
+        force[q + FORCE_X] = 0.0
+        force[q + FORCE_Y] = 0.0
+        force[q + FORCE_Z] = 0.0
+        force[q + TORQUE_X] = 0.0
+        force[q + TORQUE_Y] = 0.0
+        force[q + TORQUE_Z] = 0.0
+    return angular_momentum, inertia, math.sqrt(fastest)

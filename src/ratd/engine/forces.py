@@ -1,0 +1,211 @@
+"""Forces and torques of all contacts at one step: the hot loop of ratd.
+
+Three passes over one block of contacts after the other: gather what depends on the two monomers, compute all
+contacts of the block, sum forces and torques per monomer. The middle pass has no branches and runs on whole vector
+registers.
+"""
+
+import math
+
+import numpy as np
+
+from ratd._accelerate import jit
+from ratd.engine.layout import (
+    A_I, A_J, BLOCK, COMPRESSION, DAMPING, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST,
+    FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, FX, FY, FZ, INV_DELTA0, K_ROLL, K_SLIDE, K_TWIST, LANES, NCX, NCY, NCZ,
+    NIX, NIY, NIZ, NJX, NJY, NJZ, NORMAL, N_SCRATCH, PHI, PULL_OFF, ROW, S, TIX, TIY, TIZ, TJX, TJY, TJZ, TORQUE_X,
+    TORQUE_Y, TORQUE_Z, VECTOR, VX, VY, VZ, WIX, WIY, WIZ, WJX, WJY, WJZ, WX, WY, WZ, X, XI_C, Y, Z, ZETA_C,
+)  # fmt: skip
+from ratd.laws.jkr import COMPRESSION_END, contact_state, normal_force
+from ratd.laws.tangential import (
+    TWISTING_LIMIT,
+    excess_fraction,
+    nearly_unit,
+    roll_back,
+    rotate_pointer,
+    slide_back,
+    sliding_displacement,
+)
+
+_ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
+SCRATCH_SIZE = N_SCRATCH * LANES
+
+
+@jit(forceinline=True)
+def _gather(monomer, pair_i, pair_j, scratch, first, count):
+    for lane in range(count):
+        q = np.uint64(lane)
+        i = pair_i[first + q] * _ROW
+        j = pair_j[first + q] * _ROW
+        scratch[DX + q] = monomer[i + X] - monomer[j + X]
+        scratch[DY + q] = monomer[i + Y] - monomer[j + Y]
+        scratch[DZ + q] = monomer[i + Z] - monomer[j + Z]
+        scratch[DVX + q] = monomer[i + VX] - monomer[j + VX]
+        scratch[DVY + q] = monomer[i + VY] - monomer[j + VY]
+        scratch[DVZ + q] = monomer[i + VZ] - monomer[j + VZ]
+        scratch[WIX + q] = monomer[i + WX]
+        scratch[WIY + q] = monomer[i + WY]
+        scratch[WIZ + q] = monomer[i + WZ]
+        scratch[WJX + q] = monomer[j + WX]
+        scratch[WJY + q] = monomer[j + WY]
+        scratch[WJZ + q] = monomer[j + WZ]
+
+
+@jit(forceinline=True)
+def _compute(contact, scratch, start, count, dt_drift, dt):
+    """Advance the pointers by the last move, apply the limits, and leave forces and torques in `scratch`.
+
+    Returns the number of contacts beyond the end of the branch.
+    """
+    h = 0.5 * dt_drift
+    ended = 0
+    for lane in range(count):
+        q = np.uint64(lane)
+        k = start + q
+        dx = scratch[DX + q]
+        dy = scratch[DY + q]
+        dz = scratch[DZ + q]
+        distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+        inv = 1.0 / distance
+        ncx = dx * inv
+        ncy = dy * inv
+        ncz = dz * inv
+        a_i = contact[A_I + k]
+        a_j = contact[A_J + k]
+        wix = scratch[WIX + q]
+        wiy = scratch[WIY + q]
+        wiz = scratch[WIZ + q]
+        wjx = scratch[WJX + q]
+        wjy = scratch[WJY + q]
+        wjz = scratch[WJZ + q]
+        nix, niy, niz = rotate_pointer(contact[NIX + k], contact[NIY + k], contact[NIZ + k], h * wix, h * wiy, h * wiz)
+        njx, njy, njz = rotate_pointer(contact[NJX + k], contact[NJY + k], contact[NJZ + k], h * wjx, h * wjy, h * wjz)
+        # Twisting turns about the mean of the old and the new direction, which keeps the scheme second order.
+        phi = contact[PHI + k] + h * (
+            (wix - wjx) * (ncx + contact[NCX + k])
+            + (wiy - wjy) * (ncy + contact[NCY + k])
+            + (wiz - wjz) * (ncz + contact[NCZ + k])
+        )
+        contact[NCX + k] = ncx
+        contact[NCY + k] = ncy
+        contact[NCZ + k] = ncz
+
+        compression = (a_i + a_j - distance) * contact[INV_DELTA0 + k]
+        ended += compression < COMPRESSION_END
+        s = contact_state(compression, contact[S + k])
+        normal = normal_force(s, contact[PULL_OFF + k])
+        contact[COMPRESSION + k] = compression
+        contact[S + k] = s
+        contact[NORMAL + k] = normal
+        x = s * s
+        damping = contact[DAMPING + k] * x / (1.0 + dt * x * contact[DAMPING_RATE + k])
+        receding = scratch[DVX + q] * ncx + scratch[DVY + q] * ncy + scratch[DVZ + q] * ncz
+        contact[E_DAMP + k] += dt * damping * receding * receding
+        normal -= damping * receding
+
+        k_s = contact[K_SLIDE + k]
+        zeta_c = contact[ZETA_C + k]
+        _, zx, zy, zz = sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz)
+        square = zx * zx + zy * zy + zz * zz
+        contact[E_SLIDE + k] += 0.5 * k_s * max(0.0, square - zeta_c * zeta_c)
+        slipped = excess_fraction(square, zeta_c)
+        nix, niy, niz, njx, njy, njz = slide_back(slipped, a_i, nix, niy, niz, a_j, njx, njy, njz, zx, zy, zz)
+
+        k_r = contact[K_ROLL + k]
+        xi_c = contact[XI_C + k]
+        square = (nix + njx) ** 2 + (niy + njy) ** 2 + (niz + njz) ** 2
+        contact[E_ROLL + k] += 0.5 * k_r * max(0.0, square - xi_c * xi_c)
+        rolled = excess_fraction(square, xi_c)
+        nix, niy, niz, njx, njy, njz = roll_back(rolled, a_i, nix, niy, niz, a_j, njx, njy, njz)
+        nix, niy, niz = nearly_unit(nix, niy, niz)
+        njx, njy, njz = nearly_unit(njx, njy, njz)
+
+        k_t = contact[K_TWIST + k]
+        kept = min(max(phi, -TWISTING_LIMIT), TWISTING_LIMIT)
+        contact[E_TWIST + k] += 0.5 * k_t * (phi * phi - kept * kept)
+        contact[PHI + k] = kept
+        contact[NIX + k] = nix
+        contact[NIY + k] = niy
+        contact[NIZ + k] = niz
+        contact[NJX + k] = njx
+        contact[NJY + k] = njy
+        contact[NJZ + k] = njz
+
+        # Sliding force k_s (w.n_c) zeta/|X_i - X_j| on i; torques -k_s a_i n_i x zeta and k_s a_j n_j x zeta;
+        # rolling torque -k_r n_i x n_j and twisting torque -k_t phi n_c on i, the opposite on j.
+        wn, zx, zy, zz = sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz)
+        g = k_s * wn * inv
+        scratch[FX + q] = normal * ncx + g * zx
+        scratch[FY + q] = normal * ncy + g * zy
+        scratch[FZ + q] = normal * ncz + g * zz
+        t = k_t * kept
+        rx = k_r * (niy * njz - niz * njy) + t * ncx
+        ry = k_r * (niz * njx - nix * njz) + t * ncy
+        rz = k_r * (nix * njy - niy * njx) + t * ncz
+        g = k_s * a_i
+        scratch[TIX + q] = -g * (niy * zz - niz * zy) - rx
+        scratch[TIY + q] = -g * (niz * zx - nix * zz) - ry
+        scratch[TIZ + q] = -g * (nix * zy - niy * zx) - rz
+        g = k_s * a_j
+        scratch[TJX + q] = g * (njy * zz - njz * zy) + rx
+        scratch[TJY + q] = g * (njz * zx - njx * zz) + ry
+        scratch[TJZ + q] = g * (njx * zy - njy * zx) + rz
+    return ended
+
+
+@jit(forceinline=True)
+def _scatter(force, pair_i, pair_j, scratch, first, count):
+    for lane in range(count):
+        q = np.uint64(lane)
+        i = pair_i[first + q] * _FORCE_ROW
+        j = pair_j[first + q] * _FORCE_ROW
+        fx = scratch[FX + q]
+        fy = scratch[FY + q]
+        fz = scratch[FZ + q]
+        force[i + FORCE_X] += fx
+        force[i + FORCE_Y] += fy
+        force[i + FORCE_Z] += fz
+        force[i + TORQUE_X] += scratch[TIX + q]
+        force[i + TORQUE_Y] += scratch[TIY + q]
+        force[i + TORQUE_Z] += scratch[TIZ + q]
+        force[j + FORCE_X] -= fx
+        force[j + FORCE_Y] -= fy
+        force[j + FORCE_Z] -= fz
+        force[j + TORQUE_X] += scratch[TJX + q]
+        force[j + TORQUE_Y] += scratch[TJY + q]
+        force[j + TORQUE_Z] += scratch[TJZ + q]
+
+
+@jit
+def contact_forces(monomer, force, contact, pair_i, pair_j, scratch, n_contacts, dt_drift, dt):
+    """Add the forces and torques of all contacts to `force`.
+
+    Parameters
+    ----------
+    monomer, force, contact, pair_i, pair_j : arrays
+        See `State`. The pointers and twisting angles in `contact` are advanced by the last move, and cut back to
+        their limits.
+    scratch : (SCRATCH_SIZE,) float64 array
+        Working space.
+    n_contacts : int
+        Number of contacts.
+    dt_drift : float
+        Duration of the last move [s].
+    dt : float
+        Duration of the kick to come [s].
+
+    Returns
+    -------
+    int
+        Number of contacts that are beyond the end of the branch, to be removed.
+    """
+    ended = 0
+    for first in range(0, n_contacts, LANES):
+        count = min(LANES, (n_contacts - first + VECTOR - 1) // VECTOR * VECTOR)
+        start = np.uint64(first // LANES * BLOCK)
+        at = np.uint64(first)
+        _gather(monomer, pair_i, pair_j, scratch, at, count)
+        ended += _compute(contact, scratch, start, count, dt_drift, dt)
+        _scatter(force, pair_i, pair_j, scratch, at, count)
+    return ended

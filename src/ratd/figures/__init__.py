@@ -1,0 +1,9 @@
+"""Figures of the paper, drawn from tables and Datasets; each function returns a matplotlib Figure."""
+
+from ratd.figures.figure2 import figure2
+from ratd.figures.figure4 import figure4
+from ratd.figures.figure6 import figure6
+from ratd.figures.figure7 import figure7
+from ratd.figures.style import save
+
+__all__ = ["figure2", "figure4", "figure6", "figure7", "save"]

@@ -1,0 +1,294 @@
+"""What a job of the pipeline needs around the calculation: log, provenance, partial results, locks.
+
+A job makes one file for a block of grains. Each finished grain is kept at once as a small file of its own in the
+folder `TARGET.partial`, which Snakemake does not know of, with the hashes of the source, settings and inputs that it
+was made with. A job that was killed takes from there what still fits, and only that. The folder is removed by `tidy`
+when the pipeline has succeeded.
+
+This module decides no number: it is left out of all source hashes (see `ratd.provenance`).
+"""
+
+import fcntl
+import logging
+import os
+import shutil
+import sys
+import time
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ratd import io, schema
+from ratd.errors import FileError, InputError
+from ratd.provenance import provenance, settings_hash, source_hash
+
+WRITES = {
+    "grow": ("grains",),
+    "spin_up": ("spinup",),
+    "disrupt": ("disruption",),
+    "ensemble": ("table", "cells", "fit"),
+}
+"""Kinds of files that the script of a rule writes."""
+
+PROGRESS_INTERVAL = 10.0
+"""Least time between two messages of progress of one grain [s]."""
+
+_held = []  # open files whose locks last as long as the process
+
+
+def code_hash(scripts, rule):
+    """Hash of all source that the output of a rule depends on.
+
+    Parameters
+    ----------
+    scripts : path-like
+        Folder of the scripts; a rule and its script have the same name.
+    rule : str
+
+    Returns
+    -------
+    str
+        See `ratd.provenance.source_hash`; the layout of the files that the rule writes is part of it.
+    """
+    layout = [schema.fingerprint(kind) for kind in WRITES.get(rule, ())]
+    return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout)
+
+
+def code_hashes(scripts):
+    """Hashes of the source of all scripts of a folder.
+
+    Parameters
+    ----------
+    scripts : path-like
+
+    Returns
+    -------
+    dict of str to str
+        Name of the rule -> `code_hash`.
+    """
+    return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
+
+
+class Job:
+    """One job, as a context: logs to its file and the terminal, and ends with one sentence on bad input.
+
+    Parameters
+    ----------
+    snakemake : snakemake.script.Snakemake
+        The object of this name in a script. ``params.code`` is from `code_hash`, ``params.settings`` is a dict of all
+        that the output depends on, next to the inputs.
+
+    Attributes
+    ----------
+    settings : dict
+        As given.
+    log : logging.Logger
+        Writes to the first log file of the rule and to the terminal.
+    provenance : dict
+        Attributes for the files that the job writes, from `ratd.provenance.provenance`.
+    """
+
+    def __init__(self, snakemake):
+        self._snakemake = snakemake
+        self.settings = snakemake.params.settings
+        self.log = logging.getLogger("ratd.job")
+
+    def __enter__(self):
+        self._set_up_log()
+        try:
+            job = self._snakemake
+            if code_hash(job.scriptdir, job.rule) != job.params.code:
+                raise InputError("the source was changed after snakemake was started: start the same command again")
+            self.provenance = provenance(job.params.code, self.settings, job.input)
+        except (InputError, FileError) as error:
+            self._fail(error)
+        return self
+
+    def _set_up_log(self):
+        """Full messages into the log file, the same with the name of the job in front on the terminal."""
+        self.log.setLevel(logging.INFO)
+        self.log.propagate = False
+        wildcards = self._snakemake.wildcards
+        words = [f"{word} nm" if name == "size" else word for name, word in wildcards.items()]
+        label = " ".join([self._snakemake.rule, *words]).replace("%", "%%")
+        for handler, form in (
+            (logging.FileHandler(self._snakemake.log[0]), "%(asctime)s %(message)s"),
+            (logging.StreamHandler(sys.stderr), f"{label}: %(message)s"),
+        ):
+            handler.setFormatter(logging.Formatter(form))
+            self.log.addHandler(handler)
+
+    def __exit__(self, kind, error, traceback):
+        if isinstance(error, InputError | FileError):
+            self._fail(error)
+        elif error is not None and not isinstance(error, SystemExit):
+            self.log.error("failed", exc_info=(kind, error, traceback))
+        return False
+
+    def _fail(self, error):
+        self.log.error(f"error: {error}")
+        sys.exit(1)
+
+    def block(self, target, kind, material, seeds, make):
+        """Write the file of a block of grains, grain by grain, going on where a killed job was.
+
+        Parameters
+        ----------
+        target : path-like
+            The file to write.
+        kind : str
+            A key of `ratd.schema.KINDS`.
+        material : ratd.materials.Material
+            What the grains are made of.
+        seeds : sequence of int
+            Seeds of the grains, in the order in which they stand in the file.
+        make : callable
+            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.io`). Below the path `checkpoint` it may
+            keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
+            has another name and is never found.
+        """
+        target = Path(target)
+        folder = partial_folder(target)
+        key = settings_hash(self.provenance)
+        with locked(folder / "lock", self.log):
+            kept = 0
+            rows = []
+            for place, seed in enumerate(seeds, start=1):
+                piece = folder / f"seed_{seed}.nc"
+                if io.holds(piece, kind, self.provenance):
+                    kept += 1
+                else:
+                    start = time.monotonic()
+                    checkpoint = folder / f"seed_{seed}.{key}.checkpoint"
+                    row = make(seed, checkpoint)
+                    io.write(piece, io.block([row], kind, material, self.provenance), kind)
+                    checkpoint.unlink(missing_ok=True)
+                    seconds = time.monotonic() - start
+                    self.log.info(f"seed {seed}: done in {seconds:.1f} s ({place} of {len(seeds)} grains)")
+                rows += io.rows(io.read(piece, kind), kind)
+            io.write(target, io.block(rows, kind, material, self.provenance), kind)
+            self.log.info(f"{len(seeds)} grains written to {target}, {kept} of them were finished before")
+
+    def progress(self, seed):
+        """Callback for `ratd.spin_up` that says how far the run of one grain is.
+
+        Parameters
+        ----------
+        seed : int
+
+        Returns
+        -------
+        callable
+            ``progress(omega, mass_fraction, seconds_to_go, steps)``; a message at most every `PROGRESS_INTERVAL`.
+        """
+        last = time.monotonic()
+
+        def say(omega, mass_fraction, seconds_to_go, steps):
+            nonlocal last
+            now = time.monotonic()
+            if now - last >= PROGRESS_INTERVAL:
+                last = now
+                self.log.info(
+                    f"seed {seed}: omega {omega:.3g} rad/s, mass left {100 * mass_fraction:.0f} %, "
+                    f"{duration(seconds_to_go)} to go, {steps} steps"
+                )
+
+        return say
+
+
+def duration(seconds):
+    """A length of time in words, such as ``"about 4 min"``; "unknown time" where it is no finite number."""
+    if seconds is None or not 0 <= seconds < float("inf"):
+        return "unknown time"
+    for unit, length in (("d", 86400), ("h", 3600), ("min", 60)):
+        if seconds >= 2 * length:
+            return f"about {seconds / length:.0f} {unit}"
+    return f"about {seconds:.0f} s"
+
+
+def partial_folder(target):
+    """Folder of the finished grains of a file that is not finished."""
+    target = Path(target)
+    return target.with_name(f"{target.name}.partial")
+
+
+@contextmanager
+def locked(path, log):
+    """Hold a lock that ends with the process, however it ends; wait while another process holds it.
+
+    Two jobs for the same file can be at work at once when Snakemake alone was killed and started again: the second
+    one waits, and finds the grains of the first.
+
+    Parameters
+    ----------
+    path : path-like
+        The file to lock, made if needed.
+    log : logging.Logger
+        Told when there is something to wait for.
+    """
+    path = Path(path)
+    while True:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle = open(path, "a")
+        except FileNotFoundError:  # `tidy` removed the folder at this moment
+            continue
+        except OSError as error:
+            raise FileError(f"{path}: cannot be written ({error.strerror})") from error
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            log.info("another process is at work on the same file, waiting for it")
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        except OSError as error:
+            raise FileError(f"{path}: cannot be locked ({error.strerror})") from error
+        # the file may have been removed while we waited: then the lock is on nothing
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(handle.fileno()), os.stat(path)):
+                break
+        handle.close()
+    with handle:
+        yield
+
+
+def tidy(results):
+    """Remove the folders of partial results whose files are finished, and that no process is at work in.
+
+    Parameters
+    ----------
+    results : path-like
+        Folder of all results.
+    """
+    for folder in sorted(Path(results).rglob("*.partial")):
+        if not folder.with_suffix("").is_file():
+            continue
+        with open(folder / "lock", "a") as handle, suppress(BlockingIOError):
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(folder)
+
+
+def release_stale_locks(folder=".snakemake"):
+    """Remove the locks that a killed Snakemake left behind, unless another one is running here.
+
+    Snakemake locks its outputs by files that name no process, so after a `kill -9` it cannot know that nobody is left
+    to remove them, and asks for `--unlock`. Here every Snakemake holds a shared lock of the operating system while it
+    lives. Whoever can have that lock alone is the only one, and what Snakemake's own locks say is out of date. While
+    another one lives they are left in place, and Snakemake refuses to work on the same files at the same time.
+
+    Parameters
+    ----------
+    folder : path-like
+        Snakemake's own folder.
+    """
+    folder = Path(folder)
+    folder.mkdir(exist_ok=True)
+    handle = open(folder / "ratd.lock", "a")
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        pass
+    else:
+        for lock in (folder / "locks").glob("*.lock"):
+            lock.unlink(missing_ok=True)
+    # waits only for another one that is in the lines above
+    fcntl.flock(handle, fcntl.LOCK_SH)
+    _held.append(handle)

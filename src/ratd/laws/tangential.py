@@ -1,0 +1,127 @@
+"""Sliding, rolling and twisting of two spheres in contact, with their inelastic limits.
+
+Each monomer of a contact carries a contact pointer, a unit vector from its centre to the contact, fixed in the
+monomer (Dominik & Nuebold 2002). All displacements follow from the two pointers, the direction n_c from j to i, and
+the twisting angle.
+
+Vectors are passed as three numbers each, so that the compiler can treat many contacts at once.
+"""
+
+import math
+
+from ratd._accelerate import jit
+
+TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
+"""phi_c [rad], critical twisting angle (Sect. 6 of the paper)."""
+
+_TINY = 1e-300  # keeps 0/0 out of directions of vanishing displacements
+
+
+@jit
+def sliding_stiffness(equilibrium_contact_radius, shear_modulus, poisson_number):
+    """k_s [N m-1] = 8 r0 G*, with G* = G/(2(2 - nu)) for two equal materials (Mindlin).
+
+    Printed with G* = G/(2 - 2 nu^2), 1.9 times stiffer (physics.md Sect. 4; Eq. 13).
+    """
+    return 8.0 * equilibrium_contact_radius * shear_modulus / (2.0 * (2.0 - poisson_number))
+
+
+@jit
+def sliding_limit(equilibrium_contact_radius, poisson_number):
+    """zeta_c [m] = r0 (2 - nu)/(16 pi) (printed 1 - nu; physics.md Sect. 4)."""
+    return equilibrium_contact_radius * (2.0 - poisson_number) / (16.0 * math.pi)
+
+
+@jit
+def rolling_stiffness(pull_off_force, reduced_radius):
+    """k_r [N m] = 4 F_C R: rolling torque on i is -k_r n_i x n_j, potential k_r |n_i + n_j|^2/2 (Eq. 16)."""
+    return 4.0 * pull_off_force * reduced_radius
+
+
+@jit
+def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
+    """k_t [N m rad-1] = 16/3 G' r0^3 with G' = G/2 for equal materials (printed G*; physics.md Sect. 4, Eq. 17)."""
+    return 8.0 / 3.0 * shear_modulus * equilibrium_contact_radius**3
+
+
+@jit(forceinline=True)
+def rotate_pointer(nx, ny, nz, tx, ty, tz):
+    """Turn a vector by the rotation whose half-angle vector is t = w dt/2 (Cayley's form, exact in length).
+
+    The turning angle is 2 atan|t|, i.e. |w| dt up to a relative error of (w dt)^2/12.
+    """
+    f = 2.0 / (1.0 + tx * tx + ty * ty + tz * tz)
+    ux = ty * nz - tz * ny
+    uy = tz * nx - tx * nz
+    uz = tx * ny - ty * nx
+    return (
+        nx + f * (ux + ty * uz - tz * uy),
+        ny + f * (uy + tz * ux - tx * uz),
+        nz + f * (uz + tx * uy - ty * ux),
+    )
+
+
+@jit(forceinline=True)
+def sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz):
+    """Sliding displacement zeta = w - (w.n_c) n_c [m] with w = a_i n_i - a_j n_j.
+
+    Returns
+    -------
+    tuple of float
+        w.n_c [m] and the three components of zeta [m].
+
+    Notes
+    -----
+    physics.md Sect. 4. Eq. 14 is printed with signs that make it measure rolling.
+    """
+    wx = a_i * nix - a_j * njx
+    wy = a_i * niy - a_j * njy
+    wz = a_i * niz - a_j * njz
+    wn = wx * ncx + wy * ncy + wz * ncz
+    return wn, wx - wn * ncx, wy - wn * ncy, wz - wn * ncz
+
+
+@jit(forceinline=True)
+def excess_fraction(square, limit):
+    """Part of a displacement that lies beyond its limit: max(0, 1 - limit/|displacement|).
+
+    Parameters
+    ----------
+    square : float
+        Squared length of the displacement.
+    limit : float
+        Critical length.
+    """
+    return max(0.0, 1.0 - limit / math.sqrt(square + _TINY))
+
+
+@jit(forceinline=True)
+def slide_back(fraction, a_i, nix, niy, niz, a_j, njx, njy, njz, zx, zy, zz):
+    """Pointers after the excess Delta = fraction * zeta has slipped: n_i -= Delta/(a_i+a_j), n_j += the same.
+
+    n_i + n_j, hence the rolling displacement, stays as it is. The pointers are no longer unit vectors.
+    """
+    g = fraction / (a_i + a_j)
+    return nix - g * zx, niy - g * zy, niz - g * zz, njx + g * zx, njy + g * zy, njz + g * zz
+
+
+@jit(forceinline=True)
+def roll_back(fraction, a_i, nix, niy, niz, a_j, njx, njy, njz):
+    """Pointers after the excess Delta = fraction * R (n_i + n_j) has rolled off: n_k -= Delta/a_k.
+
+    a_i n_i - a_j n_j, hence the sliding displacement, stays as it is. The pointers are no longer unit vectors.
+    """
+    g = fraction / (a_i + a_j)
+    g_i = g * a_j  # R/a_i
+    g_j = g * a_i
+    x = nix + njx
+    y = niy + njy
+    z = niz + njz
+    return nix - g_i * x, niy - g_i * y, niz - g_i * z, njx - g_j * x, njy - g_j * y, njz - g_j * z
+
+
+@jit(forceinline=True)
+def nearly_unit(x, y, z):
+    """Unit vector from one whose length differs from 1 by e << 1, to second order in e (no root, no division)."""
+    f = 1.5 - 0.5 * (x * x + y * y + z * z)
+    return f * x, f * y, f * z

@@ -1,0 +1,395 @@
+"""Spin-up of one grain until it is disrupted: relaxation at rest, then records at fixed omega, with checkpoints."""
+
+import hashlib
+import os
+import time
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ratd.bound import cut_bound
+from ratd.drives import AT_REST, OMEGA_RAT, SPIN_UP_LAWS, make_drive
+from ratd.engine.advance import FEW_CONTACTS, FULL, STEPS_DONE, advance, residual_force
+from ratd.engine.contacts import update_contact_rates
+from ratd.engine.fragments import find_fragments
+from ratd.engine.layout import (
+    DT, DT_DRIFT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FRAGMENTS_LOST, LANES, LARGEST_CONTACTS,
+    LARGEST_MONOMERS, MONOMERS, OMEGA, PULL_OFF, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, X,
+)  # fmt: skip
+from ratd.engine.measure import (
+    dissipated,
+    extreme_normal_force,
+    fragment_shape,
+    largest_fragment,
+    stored_energy,
+    total_stress,
+)
+from ratd.engine.state import State, come_to_rest, contact_field, monomer_rows, new_state, place, with_room
+from ratd.errors import InputError
+from ratd.grain import Grain
+from ratd.shape import principal_axes
+
+__all__ = ["relax", "spin_up"]
+
+DAMPINGS = ("implicit", "explicit")
+RESIDUAL = 1e-4
+"""A grain is relaxed when no net force exceeds this part of the least pull-off force in it."""
+RELAXATION_STEPS = 50
+RELAXATION_ROUNDS = 2000
+CHECKPOINT_INTERVAL = 60.0
+PROGRESS_INTERVAL = 2.0
+"""Wall time [s] between two checkpoints, and two calls of `progress`."""
+
+# name -> units, meaning, type; in the order of the columns of the records
+RECORDS = {
+    "omega": ("rad s-1", "angular velocity", "f8"),
+    "time": ("s", "time since the start of the spin-up", "f8"),
+    "mass": ("kg", "mass of the largest fragment", "f8"),
+    "n_monomers": ("1", "number of monomers of the largest fragment", "i4"),
+    "n_contacts": ("1", "number of contacts of the largest fragment", "i4"),
+    "total_stress": ("Pa", "sum of |F_N|/(pi r^2) over the contacts of the largest fragment, mean since last record", "f8"),
+    "axis_a": ("m", "shortest semi-axis of the ellipsoid with the same moments of inertia", "f8"),
+    "axis_b": ("m", "middle semi-axis of the ellipsoid with the same moments of inertia", "f8"),
+    "axis_c": ("m", "longest semi-axis of the ellipsoid with the same moments of inertia", "f8"),
+    "porosity": ("1", "porosity P = 1 - a_eff^3/(a b c)", "f8"),
+    "dissipated_sliding": ("J", "energy dissipated by sliding so far", "f8"),
+    "dissipated_rolling": ("J", "energy dissipated by rolling so far", "f8"),
+    "dissipated_twisting": ("J", "energy dissipated by twisting so far", "f8"),
+    "dissipated_damping": ("J", "energy dissipated by viscoelastic damping so far", "f8"),
+    "dissipated_contact": ("J", "energy dissipated by making and breaking contacts so far", "f8"),
+    "torque_work": ("J", "work done by the outer torque so far", "f8"),
+    "kinetic_energy": ("J", "kinetic energy of the largest fragment in the inertial frame", "f8"),
+    "potential_energy": ("J", "potential energy of the contacts of the largest fragment", "f8"),
+    "n_fragments_lost": ("1", "number of fragments lost so far", "i4"),
+}  # fmt: skip
+FRAGMENTS = {
+    "fragment_mass": ("kg", "mass of a fragment that left"),
+    "fragment_n_monomers": ("1", "number of monomers of a fragment that left"),
+    "fragment_omega": ("rad s-1", "angular velocity at which a fragment left"),
+    "fragment_time": ("s", "time at which a fragment left"),
+}
+
+
+def relax(grain, *, timestep_factor=0.05):
+    """State of a grain that has come to rest: contacts of the growth carry the forces that their compression gives.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    timestep_factor : float
+        f of Eq. 31.
+
+    Returns
+    -------
+    State
+        Origin at the centre of mass, z along a_1, the axis of the greatest moment of inertia; no velocities, no
+        dissipated energy, time 0. Net forces are below `RESIDUAL` times the least pull-off force.
+
+    Raises
+    ------
+    RuntimeError
+        If the grain does not come to rest.
+
+    Notes
+    -----
+    Integrated at rest with damping; whenever the kinetic energy falls, all velocities are set to zero, so that the
+    slow swaying of long arms, which contacts hardly damp, does not go on for ever.
+    """
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
+    goal = RESIDUAL * contact_field(state, PULL_OFF).min()
+    kinetic = 0.0
+    for _ in range(RELAXATION_ROUNDS):
+        residual = residual_force(state)
+        if residual <= goal:
+            break
+        state = _advance(state, AT_REST, np.inf, state.counter[STEPS] + RELAXATION_STEPS, -1, timestep_factor, True)[0]
+        before, kinetic = kinetic, stored_energy(state)[0]
+        if kinetic <= before:
+            come_to_rest(state)
+            kinetic = 0.0
+    else:
+        raise RuntimeError(f"the grain does not come to rest: net force {residual:.2e} N, allowed {goal:.2e} N")
+
+    come_to_rest(state)
+    find_fragments(state)
+    position, mass, radius = largest_fragment(state)
+    _, axes = principal_axes(position, mass, radius)
+    place(state, mass @ position / mass.sum(), axes[[1, 2, 0]])
+    state.scalar[:] = 0.0
+    state.counter[STEPS] = 0
+    fields = state.contact.reshape(-1, LANES)
+    per_block = len(fields) // (len(state.pair_i) // LANES)
+    for field in (E_SLIDE, E_ROLL, E_TWIST, E_DAMP):
+        fields[int(field) // LANES :: per_block] = 0.0
+    update_contact_rates(state, timestep_factor, True)
+    return state
+
+
+def spin_up(
+    grain,
+    *,
+    drive="prescribed",
+    epsilon=None,
+    angular_acceleration=None,
+    coriolis=None,
+    timestep_factor=0.05,
+    damping="implicit",
+    max_steps=None,
+    records=300,
+    snapshot_every=0,
+    checkpoint=None,
+    progress=None,
+):
+    """Spin a grain up until one contact is left.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    drive : {"prescribed", "literal"}
+        The consistent model with the outer torque, or the equations as printed (see `ratd.drives`).
+    epsilon : float, optional
+        Spin up with constant (d omega/dt)/omega^2 above the cut bound omega_1, and linearly below it. 0.02 when
+        neither this nor `angular_acceleration` is given.
+    angular_acceleration : float, optional
+        Spin up after Eq. 24 instead, with this initial d omega/dt [rad/s2].
+    coriolis : {"exact", "explicit"}, optional
+        Treatment of the Coriolis force; by default exact for `prescribed`, explicit for `literal`.
+    timestep_factor : float
+        f of dt = f min(t_dis, t_vel), Eq. 31.
+    damping : {"implicit", "explicit"}
+        Treatment of the viscoelastic damping. Explicit is stable for small f only.
+    max_steps : int, optional
+        End after so many steps.
+    records : int
+        Records are evenly spaced in omega, by omega_1/records up to 2 omega_1; for each octave above the spacing
+        doubles, so that a small remnant, which holds to hundreds of omega_1, costs few records.
+    snapshot_every : int
+        Keep positions, fragments and forces of all monomers at every so many records; 0 for never.
+    checkpoint : path-like, optional
+        Where to keep what is needed to go on after a kill. A file made with other input is ignored. Results are the
+        same bits with and without interruption.
+    progress : callable, optional
+        Called every few seconds as ``progress(omega, mass_fraction, seconds_to_go, steps)``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions ``record``, ``fragment`` (those that left, in their order), ``snapshot`` and ``monomer``; the
+        attributes tell the settings, ``steps``, ``timestep`` [s], ``end_reason``, ``cut_bound`` [rad/s] and the
+        state after relaxation (``initial_...``).
+
+    Raises
+    ------
+    InputError
+        If an argument is not usable.
+    """
+    _check(grain, timestep_factor, damping, max_steps, records, snapshot_every)
+    if epsilon is None and angular_acceleration is None:
+        epsilon = 0.02
+    omega_1 = cut_bound(grain)
+    motion = make_drive(
+        drive, omega_1=omega_1, epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis
+    )
+    implicit = damping == "implicit"
+    key = _fingerprint(grain, motion, timestep_factor, implicit, records, snapshot_every)
+    loaded = _load(checkpoint, key)
+    if loaded is None:
+        state = relax(grain, timestep_factor=timestep_factor)
+        update_contact_rates(state, timestep_factor, implicit)
+        state.scalar[DT_DRIFT] = state.scalar[DT]
+        find_fragments(state)
+        rows = [_record(state, grain.material.density)]
+        snapshots = [_snapshot(state)] if snapshot_every else []
+    else:
+        state, rows, snapshots = loaded
+    first = rows[0]
+    fewest = 1 if first[4] > 1 else 0
+    steps_goal = np.iinfo(np.int64).max if max_steps is None else int(max_steps)
+
+    watch = _Watch(state, motion, first[2], progress)
+    saved = time.monotonic()
+    reason = None
+    while reason is None:
+        goal = min(_edge(len(rows), omega_1, records), OMEGA_RAT)
+        state, code = _advance(state, motion, goal, steps_goal, fewest, timestep_factor, implicit)
+        rows.append(_record(state, grain.material.density))
+        if not np.isfinite(rows[-1][:6]).all():
+            raise RuntimeError(f"the integration failed at omega = {rows[-1][0]:.3e} rad/s: values are not finite")
+        if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or code == FEW_CONTACTS):
+            snapshots.append(_snapshot(state))
+        if code == FEW_CONTACTS:
+            reason = "one contact left"
+        elif code == STEPS_DONE:
+            reason = "max_steps reached"
+        elif rows[-1][0] >= OMEGA_RAT * (1.0 - 1e-9):
+            reason = "omega_RAT reached"
+        elif checkpoint is not None and time.monotonic() - saved > CHECKPOINT_INTERVAL:
+            _save(checkpoint, key, state, rows, snapshots)
+            saved = time.monotonic()
+        watch.look(state, rows[-1])
+
+    initial = dict(zip(RECORDS, first[:-1], strict=True))
+    run = _dataset(state, rows, snapshots, grain)
+    run.attrs = {
+        "drive": drive,
+        "spin_up_law": SPIN_UP_LAWS[motion.law],
+        "epsilon": np.nan if epsilon is None else float(epsilon),
+        "angular_acceleration": motion.acceleration or motion.epsilon * omega_1**2,
+        "coriolis": "explicit" if motion.explicit_coriolis else "exact",
+        "damping": damping,
+        "timestep_factor": float(timestep_factor),
+        "steps": int(state.counter[STEPS]),
+        "timestep": first[-1],
+        "end_reason": reason,
+        "material": grain.material.name,
+        "type": grain.type or "",
+        "a_eff": grain.effective_radius,
+        "seed": -1 if grain.seed is None else int(grain.seed),
+        "cut_bound": omega_1,
+    } | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
+    run.attrs |= {f"initial_{name}": int(initial[name]) for name in ("n_monomers", "n_contacts")}
+    return run
+
+
+def _check(grain, timestep_factor, damping, max_steps, records, snapshot_every):
+    if not isinstance(grain, Grain):
+        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
+    if not (np.isfinite(timestep_factor) and 0.0 < timestep_factor <= 1.0):
+        raise InputError(f"timestep_factor is {timestep_factor!r}; it must be above 0 and at most 1.")
+    if damping not in DAMPINGS:
+        raise InputError(f"damping is {damping!r}; allowed are {', '.join(DAMPINGS)}.")
+    if max_steps is not None and not max_steps >= 1:
+        raise InputError(f"max_steps is {max_steps!r}; it must be at least 1, or None for no limit.")
+    if not (records == int(records) and records >= 1):
+        raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
+    if not (snapshot_every == int(snapshot_every) and snapshot_every >= 0):
+        raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
+
+
+def _advance(state, *arguments):
+    """`advance`, with more room for contacts when they need it."""
+    while True:
+        code = advance(state, *arguments)
+        if code != FULL:
+            return state, code
+        state = with_room(state, 2 * len(state.pair_i))
+
+
+def _edge(number, omega_1, records):
+    """Angular velocity [rad/s] of a record: evenly spaced up to 2 omega_1, then in each octave."""
+    octave = max(0, (number - records - 1) // records)
+    return 2.0**octave * omega_1 * (number - octave * records) / records
+
+
+def _record(state, density):
+    """One row of the records, in the order of `RECORDS`, and the step at the end; starts a new recording interval."""
+    scalar = state.scalar
+    if scalar[STRESS_SAMPLES] > 0:
+        stress = scalar[STRESS_SUM] / scalar[STRESS_SAMPLES]
+    else:
+        stress = total_stress(state)
+    scalar[STRESS_SUM] = scalar[STRESS_SAMPLES] = 0.0
+    mass, a, b, c, porosity = fragment_shape(state, density)
+    counter = state.counter
+    return [
+        float(scalar[OMEGA]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
+        float(counter[LARGEST_CONTACTS]), stress, a, b, c, porosity, *dissipated(state).tolist(),
+        float(scalar[TORQUE_WORK]), *stored_energy(state), float(counter[FRAGMENTS_LOST]), float(scalar[DT]),
+    ]  # fmt: skip
+
+
+def _snapshot(state):
+    """omega and, for every monomer of the original grain: x, y, z, fragment (-1 if dropped), normal force."""
+    n = len(state.identity)
+    kept = state.identity[: state.counter[MONOMERS]]
+    table = np.full((n, 5), np.nan)
+    table[:, 3] = -1.0
+    table[kept, :3] = monomer_rows(state)[:, X : X + 3]
+    table[kept, 3] = state.fragment[: state.counter[MONOMERS]]
+    table[kept, 4] = extreme_normal_force(state)
+    return np.concatenate([[state.scalar[OMEGA]], table.ravel()])
+
+
+def _dataset(state, rows, snapshots, grain):
+    table = np.array(rows)
+    variables = {
+        name: ("record", table[:, column].astype(dtype), {"units": units, "long_name": meaning})
+        for column, (name, (units, meaning, dtype)) in enumerate(RECORDS.items())
+    }
+    lost = state.lost[: state.counter[FRAGMENTS_LOST]]
+    for column, (name, (units, meaning)) in enumerate(FRAGMENTS.items()):
+        dtype = "i4" if name == "fragment_n_monomers" else "f8"
+        variables[name] = ("fragment", lost[:, column].astype(dtype), {"units": units, "long_name": meaning})
+    if snapshots:
+        table = np.array(snapshots)
+        frames = table[:, 1:].reshape(len(table), -1, 5)
+        variables["snapshot_omega"] = ("snapshot", table[:, 0], {"units": "rad s-1", "long_name": "angular velocity"})
+        for axis, name in enumerate("xyz"):
+            about = {"units": "m", "long_name": f"position along {name} in the turning frame"}
+            variables[f"snapshot_{name}"] = (("snapshot", "monomer"), frames[..., axis], about)
+        about = {"units": "1", "long_name": "fragment: 0 the largest, 1, 2, ... others, -1 dropped"}
+        variables["snapshot_fragment"] = (("snapshot", "monomer"), frames[..., 3].astype("i4"), about)
+        about = {"units": "N", "long_name": "normal force of greatest magnitude on the monomer, > 0 pushing"}
+        variables["snapshot_normal_force"] = (("snapshot", "monomer"), frames[..., 4], about)
+        variables["monomer_radius"] = ("monomer", grain.radius.copy(), {"units": "m", "long_name": "radius"})
+    return xr.Dataset(variables)
+
+
+class _Watch:
+    """Tells how far a run is, every few seconds, with a guess of the time to go from the pace so far."""
+
+    def __init__(self, state, drive, mass, progress):
+        self.drive, self.mass, self.progress = drive, mass, progress
+        self.start = self.last = time.monotonic()
+        self.begun = self._done(state.scalar[OMEGA])
+
+    def _done(self, omega):
+        """A number that grows evenly with the steps under the constant-epsilon law: 1 at omega_1, 2 at the end."""
+        ratio = omega / self.drive.omega_1
+        return ratio if ratio < 1.0 else 2.0 - 1.0 / ratio
+
+    def look(self, state, row):
+        now = time.monotonic()
+        if self.progress is None or now - self.last < PROGRESS_INTERVAL:
+            return
+        self.last = now
+        done = self._done(row[0])
+        # Most of the mass gone: each further step costs little.
+        to_go = (now - self.start) * max(0.0, 2.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
+        self.progress(row[0], row[2] / self.mass, to_go, int(state.counter[STEPS]))
+
+
+def _fingerprint(grain, *settings):
+    """What a checkpoint must have been made with to be of use."""
+    digest = hashlib.sha256()
+    for array in (grain.position, grain.radius):
+        digest.update(np.ascontiguousarray(array).tobytes())
+    digest.update(repr((grain.material, *settings)).encode())
+    return digest.hexdigest()
+
+
+def _save(path, key, state, rows, snapshots):
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    with open(temporary, "wb") as file:
+        np.savez(file, key=key, rows=np.array(rows), snapshots=np.array(snapshots), **state._asdict())
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(temporary, path)
+
+
+def _load(path, key):
+    """State, records and snapshots of a checkpoint; None when there is none, or it is damaged or of another run."""
+    if path is None or not Path(path).exists():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            if str(file["key"]) != key:
+                return None
+            state = State(**{name: file[name] for name in State._fields})
+            return state, file["rows"].tolist(), list(file["snapshots"])
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None

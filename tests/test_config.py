@@ -1,0 +1,199 @@
+"""The config: what is refused, with which words, and what follows from what is accepted."""
+
+from pathlib import Path
+
+import pytest
+
+from ratd.config import check, load, merge, read_yaml, size_label
+from ratd.errors import InputError
+from ratd.materials import MATERIALS
+
+ROOT = Path(__file__).parents[1]
+DEFAULT, QUICK = ROOT / "config" / "config.yaml", ROOT / "config" / "quick.yaml"
+
+
+@pytest.fixture(autouse=True)
+def in_root(monkeypatch):
+    monkeypatch.chdir(ROOT)
+
+
+def with_changes(changes):
+    return check(merge(read_yaml(DEFAULT), changes))
+
+
+def test_default_is_the_full_paper():
+    plan = load(DEFAULT)
+    assert len(plan.cells) * len(plan.seeds) == 2970
+    assert plan.config["materials"] == ["a-C", "q-S", "co-S"]
+    assert plan.sizes == [str(size) for size in range(550, 0, -50)]
+    assert plan.config["drives"] == ["prescribed"]
+    assert plan.figures == [2, 4, 6, 7]
+
+
+def test_quick_is_three_of_each():
+    plan = load(DEFAULT, QUICK)
+    assert (len(plan.config["materials"]), len(plan.config["types"]), len(plan.sizes), len(plan.seeds)) == (3, 3, 3, 3)
+    assert plan.config["results"] != load(DEFAULT).config["results"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "allowed"),
+    [
+        ({"materials": ["x-S"]}, "materials[0] is 'x-S'", "a-C, q-S"),
+        ({"materials": []}, "materials is []", "at least one"),
+        ({"materials": "q-S"}, "materials is 'q-S'", "a list"),
+        ({"types": ["BA", "BAM3"]}, "types[1] is 'BAM3'", "BA, BAM1 or BAM2"),
+        ({"sizes_nm": [50, -50]}, "sizes_nm[1] is -50", "above 0"),
+        ({"sizes_nm": [0]}, "sizes_nm[0] is 0", "above 0"),
+        ({"types": ["BA"], "sizes_nm": [12]}, "sizes_nm[0] is 12", "above 12.6 nm"),
+        ({"sizes_nm": [50, 50]}, "sizes_nm is [50, 50]", "different"),
+        ({"sizes_nm": [float("nan")]}, "sizes_nm[0] is nan", "finite"),
+        ({"block_size": 0}, "block_size is 0", "1 or more"),
+        ({"block_size": 10.0}, "block_size is 10.0", "whole number"),
+        ({"block_size": True}, "block_size is True", "whole number"),
+        ({"seeds": {"number": 0}}, "seeds.number is 0", "1 or more"),
+        ({"seeds": {"first": -1}}, "seeds.first is -1", "0 or more"),
+        ({"seed": 3}, "the key 'seed' is unknown", "seeds"),
+        ({"spin_up": {"epsilom": 1}}, "the key 'epsilom' in spin_up is unknown", "epsilon"),
+        ({"spin_up": {"epsilon": "1e-2"}}, "spin_up.epsilon is '1e-2'", "a number above 0"),
+        ({"spin_up": {"epsilon": 0}}, "spin_up.epsilon is 0", "above 0"),
+        ({"spin_up": None}, "spin_up is None", "a mapping"),
+        ({"spin_up": {"angular_acceleration": 1e14}}, "spin_up give {'epsilon': 0.02, 'angular", "null for the other"),
+        ({"drives": ["literal"], "literal": {"angular_acceleration": None}}, "spin_up and literal together", "null"),
+        ({"drives": ["torque"]}, "drives[0] is 'torque'", "prescribed"),
+        ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
+        ({"snapshots": {"grains": [{"material": "q-S"}]}}, "snapshots.grains[0].type is missing", "BA, BAM1"),
+        (
+            {"snapshots": {"grains": [{"material": "q-S", "type": "BA", "size_nm": 50, "seed": 30}]}},
+            "snapshots.grains[0].seed is 30",
+            "0 to 29",
+        ),
+        ({"figures": {"figure4": {"size_nm": 75}}}, "figures.figure4.size_nm is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"figure6": {"material": "ice"}}}, "figures.figure6.material is 'ice'", "a-C, q-S, co-S"),
+        ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
+        ({"results": ""}, "results is ''", "a folder"),
+        ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
+    ],
+)
+def test_what_is_wrong_is_named_in_one_sentence(changes, key, allowed):
+    with pytest.raises(InputError) as error:
+        with_changes(changes)
+    message = str(error.value)
+    assert key in message and allowed in message
+    assert "\n" not in message
+
+
+def test_missing_key_is_named():
+    config = read_yaml(DEFAULT)
+    del config["block_size"]
+    with pytest.raises(InputError, match="the key block_size is missing; allowed: a whole number"):
+        check(config)
+
+
+def test_text_that_is_not_yaml_is_named_with_its_line(tmp_path):
+    file = tmp_path / "broken.yaml"
+    file.write_text("materials: [a-C\ntypes: [BA]\n")
+    with pytest.raises(InputError, match=r"broken.yaml: line 2: is not YAML"):
+        load(file)
+
+
+def test_a_file_that_is_no_mapping_is_named(tmp_path):
+    file = tmp_path / "list.yaml"
+    file.write_text("- a-C\n")
+    with pytest.raises(InputError, match="list.yaml: is .* a mapping"):
+        load(DEFAULT, file)
+
+
+def test_later_files_stand_over_earlier_ones_key_by_key():
+    merged = merge({"a": {"b": 1, "c": [1, 2]}, "d": 1}, {"a": {"c": [3]}, "e": 2})
+    assert merged == {"a": {"b": 1, "c": [3]}, "d": 1, "e": 2}
+
+
+def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added():
+    plan = with_changes({"seeds": {"first": 5, "number": 7}, "block_size": 3, "snapshots": {"grains": []}})
+    assert plan.blocks == ["5-7", "8-10", "11-11"]
+    more = with_changes({"seeds": {"first": 5, "number": 12}, "block_size": 3, "snapshots": {"grains": []}})
+    assert more.blocks[:2] == plan.blocks[:2]
+    assert with_changes({"block_size": 1}).blocks[-1] == "29-29"
+    assert with_changes({"block_size": 100}).blocks == ["0-29"]
+
+
+def test_settings_hold_what_a_stage_depends_on_and_nothing_else():
+    plan = load(DEFAULT)
+    other = with_changes({"spin_up": {"epsilon": 0.05}, "figures": {"figure6": {"sizes_nm": [50]}}})
+    assert other.grow("q-S", "BA", "50") == plan.grow("q-S", "BA", "50")
+    assert other.spin_up("prescribed", "q-S", "BA", "50", "0-9") != plan.spin_up("prescribed", "q-S", "BA", "50", "0-9")
+    assert other.ensemble("prescribed") == plan.ensemble("prescribed")
+    assert other.figure(7, "prescribed") == plan.figure(7, "prescribed")
+    assert other.figure(6, "prescribed") != plan.figure(6, "prescribed")
+
+
+def test_settings_are_in_si_units():
+    settings = load(DEFAULT).grow("q-S", "BA", "350")
+    assert settings["a_eff"] == pytest.approx(350e-9, rel=1e-15)
+    assert settings["radii"]["median"] == pytest.approx(20e-9, rel=1e-15)
+    assert settings["material"]["surface_energy"] == MATERIALS["q-S"].surface_energy
+
+
+def test_drives_have_spin_up_laws_of_their_own():
+    plan = with_changes({"drives": ["prescribed", "literal"]})
+    prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
+    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (0.02, None)
+    assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1e15)
+    assert prescribed["records"] == literal["records"]
+
+
+def test_snapshots_concern_the_block_of_the_grain_only():
+    plan = load(DEFAULT)
+    assert plan.spin_up("prescribed", "q-S", "BAM2", "350", "0-9")["snapshot_seeds"] == [0]
+    for cell in (("q-S", "BAM2", "350", "10-19"), ("q-S", "BAM1", "350", "0-9"), ("a-C", "BAM2", "350", "0-9")):
+        settings = plan.spin_up("prescribed", *cell)
+        assert settings["snapshot_seeds"] == [] and settings["snapshot_every"] == 0
+
+
+def test_a_figure_can_be_left_out():
+    plan = with_changes({"figures": {"figure4": None}})
+    assert plan.figures == [2, 6, 7]
+    assert plan.figure4_files("{material}/{seeds}") == []
+    assert load(DEFAULT).figure4_files("{material}/{size}/{seeds}")[0] == "q-S/350/0-9"
+
+
+@pytest.mark.parametrize(("size", "label"), [(50, "50"), (50.0, "50"), (62.5, "62.5")])
+def test_sizes_stand_in_names_without_needless_digits(size, label):
+    assert size_label(size) == label
+
+
+def materials_file(tmp_path, text):
+    file = tmp_path / "materials.yaml"
+    file.write_text(text)
+    return {"materials_file": str(file)}
+
+
+def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
+    ice = "ice: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
+    half = "half: {mix: {ice: 0.5, q-S: 0.5}}\n"
+    plan = with_changes(materials_file(tmp_path, ice + half) | {"materials": ["ice", "half", "a-C", "q-S"]})
+    assert plan.material("ice")["youngs_modulus"] == pytest.approx(7e9)
+    assert plan.material("ice")["viscous_time"] == MATERIALS["a-C"].viscous_time
+    assert plan.material("half")["density"] == pytest.approx((1000 + 2650) / 2)
+    assert plan.materials["q-S"] == MATERIALS["q-S"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
+        ("a/b: {mix: {a-C: 1.0}}\n", "'a/b'; allowed: a name of letters"),
+        ("ice: {density_kg_m3: 1000}\n", "ice.surface_energy_mJ_m2 is missing; allowed: a number"),
+        ("ice: {mix: {a-C: 0.4}}\n", "add up to 1"),
+        ("ice: {mix: {b-C: 1.0}}\n", "b-C"),
+        ("ice: {mix: {a-C: 1.0}, density_kg_m3: 5}\n", "with the one key mix"),
+        ("ice: {gamma: 1}\n", "the key 'gamma' in ice is unknown"),
+        ("ice: 5\n", "ice is 5; allowed: a mapping"),
+    ],
+)
+def test_what_is_wrong_with_a_material_is_named_with_the_file(tmp_path, text, said):
+    with pytest.raises(InputError) as error:
+        with_changes(materials_file(tmp_path, text))
+    assert said in str(error.value) and "materials.yaml" in str(error.value)
+    assert "\n" not in str(error.value)

@@ -1,0 +1,40 @@
+"""The pinned environment: complete, the same everywhere, and what is installed here."""
+
+import re
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parents[1]
+
+
+def lines():
+    text = (ROOT / "environment.txt").read_text()
+    return [line for line in text.splitlines() if line and not line.startswith("#")]
+
+
+def pinned():
+    return dict(line.split("==") for line in lines() if not line.startswith("-e"))
+
+
+def test_every_line_is_pinned_and_the_project_is_included():
+    assert lines()[-1] == "-e ."
+    assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][A-Za-z0-9.]*", line) for line in lines()[:-1])
+
+
+def test_what_the_project_asks_for_is_pinned():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert {re.match(r"[\w.-]+", name).group() for name in project["dependencies"]} <= set(pinned())
+
+
+def test_what_is_installed_is_what_is_pinned():
+    assert {name: metadata.version(name) for name in pinned()} == pinned()
+
+
+def test_environment_of_conda_has_the_same_versions():
+    environment = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd.yaml").read_text())
+    *packages, project = environment["dependencies"][-1]["pip"]
+    assert project == "../.."
+    assert dict(package.split("==") for package in packages).items() <= pinned().items()

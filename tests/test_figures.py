@@ -1,0 +1,351 @@
+"""Figures: what they show, that they can be read, and that their files repeat to the last byte."""
+
+import hashlib
+import os
+import subprocess
+import sys
+import warnings
+from itertools import combinations
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from ratd.marks import disruption
+from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
+from ratd.errors import InputError
+from ratd.figures import figure2, figure4, figure6, figure7, save
+from ratd.figures.figure6 import axis_ratios
+from ratd.figures.style import (
+    ONE_COLUMN,
+    TWO_COLUMNS,
+    TYPE_COLOUR,
+    TYPE_MARKER,
+    logarithmic,
+    offsets,
+    power_of_ten,
+    styled,
+    type_style,
+)
+from ratd.materials import get_material
+from synthetic_runs import make_run, make_table
+
+SIZES = (50e-9, 75e-9, 100e-9)
+PANEL_SIZES = (200e-9, 350e-9, 500e-9)
+
+
+def cell_of_runs(n=6, drive="prescribed"):
+    """Runs of one cell that differ."""
+    rng = np.random.default_rng(3)
+    return [
+        make_run(3e7 * rng.lognormal(0, 0.2), omega_1=5e7, gain=0.02 * seed, seed=seed, drive=drive)
+        for seed in range(n)
+    ]
+
+
+def full_figures():
+    """All four figures of an ensemble like the paper's, with fewer seeds."""
+    table = make_table(seeds=2)
+    return {
+        "figure2": figure2(table),
+        "figure4": figure4(cell_of_runs()),
+        "figure6": figure6(table),
+        "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
+    }
+
+
+def sparse_figures():
+    """The same with the ensemble of a quick configuration, with one grain, and with nothing that was disrupted."""
+    quick = make_table(sizes=SIZES, seeds=3)
+    hole = quick[~((quick["material"] == "q-S") & (quick["type"] == "BAM1"))]
+    one = make_table(("q-S",), ("BAM2",), (100e-9,), 1)
+    whole = quick.assign(omega_disr=np.nan, axis_a_disr=np.nan, axis_b_disr=np.nan, axis_c_disr=np.nan)
+    unknown = quick.assign(fractal_dimension=np.nan, drive="")
+    long = make_run(4.2e8, omega_1=2e8, end=3e8, gain=0)
+    return {
+        "quick 2": figure2(quick),
+        "quick 6": figure6(quick, sizes=SIZES),
+        "quick 7": figure7(quick, fit_ensemble(quick, n_bootstrap=5)),
+        "hole 7": figure7(hole, fit_ensemble(hole, n_bootstrap=5)),
+        "one 2": figure2(one),
+        "one 4": figure4([make_run(4.2e8, omega_1=2e8, steps=[(3e8, 0.6), (4e8, 0.3), (6e8, 0.1)], gain=0)]),
+        "one 6": figure6(one, "q-S", (100e-9,)),
+        "one 7": figure7(one, fit_ensemble(one, n_bootstrap=5)),
+        "whole 4": figure4([long]),
+        "whole 6": figure6(whole, sizes=SIZES),
+        "whole 7": figure7(whole),
+        "unknown 2": figure2(unknown),
+        "no cell 6": figure6(quick, sizes=PANEL_SIZES),
+        "new type 6": figure6(quick.assign(type="RA"), sizes=SIZES),
+        "new type 7": figure7(quick.assign(type="RA")),
+    }
+
+
+@pytest.fixture(scope="module")
+def figures():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return full_figures() | sparse_figures()
+
+
+def drawn_texts(figure, monkeypatch):
+    """All texts that a figure really draws, with their boxes in pixels."""
+    found = {}
+    draw = Text.draw
+
+    def record(text, renderer, *args, **kwargs):
+        if text.get_visible() and text.get_text().strip():
+            found[id(text)] = (text, text.get_window_extent(renderer))
+        draw(text, renderer, *args, **kwargs)
+
+    monkeypatch.setattr(Text, "draw", record)
+    styled(figure.draw_without_rendering)()
+    monkeypatch.undo()
+    return list(found.values())
+
+
+def words(figure):
+    """All that a figure says, in one string."""
+    return " | ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def lines(axes, **wanted):
+    """Lines of a panel with these properties."""
+    return [
+        line for line in axes.get_lines() if all(getattr(line, f"get_{k}")() == value for k, value in wanted.items())
+    ]
+
+
+def test_texts_are_readable(figures, monkeypatch):
+    """At print width: 7 points or more, nothing over another text, nothing over the edge."""
+    for name, figure in figures.items():
+        texts = drawn_texts(figure, monkeypatch)
+        assert len(texts) > 5, name
+        page = figure.bbox
+        for text, box in texts:
+            assert text.get_fontsize() >= 7, (name, text)
+            inside = box.x0 >= page.x0 - 1 and box.x1 <= page.x1 + 1 and box.y0 >= page.y0 - 1 and box.y1 <= page.y1 + 1
+            assert inside, (name, text)
+        for (one, box), (other, other_box) in combinations(texts, 2):
+            # Boxes that just touch (a pixel) do not disturb.
+            apart = (
+                box.x1 < other_box.x0 + 1
+                or other_box.x1 < box.x0 + 1
+                or box.y1 < other_box.y0 + 1
+                or other_box.y1 < box.y0 + 1
+            )
+            assert apart, (name, one, other)
+
+
+def test_figures_are_as_wide_as_the_columns(figures):
+    width = {name: figure.get_figwidth() for name, figure in figures.items()}
+    assert {width["figure2"], width["figure6"], width["figure7"]} == {TWO_COLUMNS}
+    assert {width["figure4"], width["one 7"]} == {ONE_COLUMN}
+
+
+@pytest.mark.parametrize("drive", ["prescribed", "literal"])
+def test_each_figure_names_its_drive(drive):
+    table = make_table(sizes=SIZES, seeds=2, drive=drive)
+    for figure in (figure2(table), figure4(cell_of_runs(2, drive)), figure6(table, sizes=SIZES), figure7(table)):
+        assert f"drive: {drive}" in figure.get_suptitle()
+    assert "drive: mine" in figure2(table, drive="mine").get_suptitle()
+
+
+def test_types_differ_in_more_than_colour():
+    assert len(set(TYPE_MARKER.values())) == len(TYPE_MARKER) == 3
+    grey = [np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) for colour in TYPE_COLOUR.values()]
+    assert set(TYPE_COLOUR) == set(TYPE_MARKER) and len(set(np.round(grey, 3))) == 3
+    style = type_style(["RA", "BA", "XY"])
+    assert len({look["color"] for look in style.values()}) == len({look["marker"] for look in style.values()}) == 3
+
+
+def test_figure2_shows_means_and_ranges():
+    table = make_table(sizes=SIZES, seeds=3)
+    cells = cell_statistics(table, by=("type", "a_eff")).set_index(["type", "a_eff"])
+    for axes, name in zip(figure2(table).axes[:3], ("n_monomers", "n_contacts", "porosity"), strict=True):
+        shift = offsets(SIZES, 3) * 1e9
+        for k, (kind, container) in enumerate(zip(("BA", "BAM1", "BAM2"), axes.containers, strict=True)):
+            points, _, (bars,) = container
+            np.testing.assert_allclose(points.get_xdata(), np.array(SIZES) * 1e9 + shift[k])
+            np.testing.assert_allclose(points.get_ydata(), cells.loc[kind][f"{name}_mean"])
+            ends = np.array([segment[:, 1] for segment in bars.get_segments()])
+            np.testing.assert_allclose(ends[:, 0], cells.loc[kind][f"{name}_minimum"])
+            np.testing.assert_allclose(ends[:, 1], cells.loc[kind][f"{name}_maximum"])
+
+
+def test_figure4_puts_the_dots_at_the_marks():
+    runs = cell_of_runs()
+    marks = [disruption(run) for run in runs]
+    mass, contacts, stress = figure4(runs, marks).axes
+    for axes, name in ((mass, "omega_mass_75"), (contacts, "omega_contacts_75"), (stress, "omega_disr")):
+        dots = [line.get_xdata()[0] for line in lines(axes, marker="o") if len(line.get_xdata())]
+        np.testing.assert_allclose(dots, [float(mark[name]) for mark in marks])
+        assert len(lines(axes, marker="None")) == len(runs)
+    heights = [line.get_ydata()[0] for line in lines(mass, marker="o")]
+    np.testing.assert_allclose(heights, 0.75 * 4.76)
+    assert "10^{-16}" in mass.get_ylabel() and "kg" in mass.get_ylabel()
+    np.testing.assert_allclose(lines(mass, marker="None")[0].get_ydata()[0], 4.76)
+
+
+def test_figure4_points_at_the_greatest_gain_of_contacts():
+    runs = cell_of_runs()
+    (note,) = [text for text in figure4(runs).axes[1].texts]
+    last = disruption(runs[-1])  # it gains most
+    assert note.xy == (float(last["omega_contacts_max"]), float(last["n_contacts_max"]))
+    assert "+10 %" in note.get_text()
+    assert "no grain gains contacts" in words(figure4([make_run(1e8, gain=0)]))
+
+
+def test_figure4_without_marks_in_the_run():
+    figure = figure4([make_run(1e8, end=0.5e8)])
+    assert all(np.isnan(line.get_xdata()).all() for axes in figure.axes for line in lines(axes, marker="o"))
+
+
+def test_figure4_needs_runs():
+    with pytest.raises(InputError, match="at least one run"):
+        figure4([])
+    with pytest.raises(InputError, match="2 runs, but 1 sets of marks"):
+        figure4(cell_of_runs(2), [disruption(make_run())])
+
+
+def test_figure6_counts_oblate_grains():
+    table = make_table(seeds=5)
+    table.loc[(table["seed"] == 4) & (table["type"] == "BA"), "axis_b_disr"] = np.nan
+    figure = figure6(table, "q-S", (350e-9,))
+    for kind in ("BA", "BAM1", "BAM2"):
+        here = table[(table["material"] == "q-S") & (table["a_eff"] == 350e-9) & (table["type"] == kind)]
+        start = sum(
+            row.axis_b_start / row.axis_a_start > row.axis_c_start / row.axis_b_start for row in here.itertuples()
+        )
+        known = here[here["axis_b_disr"].notna()]
+        end = sum(row.axis_b_disr / row.axis_a_disr > row.axis_c_disr / row.axis_b_disr for row in known.itertuples())
+        assert f"{kind} oblate: {start}/5 \N{RIGHTWARDS ARROW} {end}/{4 if kind == 'BA' else 5}" in words(figure)
+    assert "350 nm, 15 grains" in words(figure) and "prolate" in words(figure)
+
+
+def test_figure6_shows_axis_ratios():
+    table = make_table(seeds=2)
+    panel = figure6(table).axes[1]
+    here = table[(table["material"] == "a-C") & (table["a_eff"] == 350e-9) & (table["type"] == "BAM1")]
+    for when, marker in (("start", "s"), ("disr", "+")):
+        (line,) = lines(panel, marker=marker)
+        np.testing.assert_allclose(line.get_xdata(), here[f"axis_b_{when}"] / here[f"axis_a_{when}"])
+        np.testing.assert_allclose(line.get_ydata(), here[f"axis_c_{when}"] / here[f"axis_b_{when}"])
+        np.testing.assert_array_equal(line.get_xydata().T, axis_ratios(here, when))
+        (low, high), (left, right) = panel.get_ylim(), panel.get_xlim()
+        assert (line.get_ydata() > low).all() and (line.get_ydata() < high).all()
+        assert (line.get_xdata() > left).all() and (line.get_xdata() < right).all()
+
+
+def test_figure7_draws_the_fit_the_bound_and_the_printed_table():
+    table = make_table(seeds=3, scatter=0.0)
+    fit = fit_ensemble(table, "own", n_bootstrap=5)
+    figure = figure7(table, fit)
+    assert [axes.get_title() for axes in figure.axes] == ["a-C", "q-S", "co-S"]
+    panel, m = figure.axes[1], get_material("q-S")
+    here = table[(table["material"] == "q-S") & (table["type"] == "BAM2")]
+    groups = here.assign(x=np.log(here["n_contacts"] * here["filling_factor"])).groupby("a_eff")
+    contacts = np.exp(groups["x"].mean())
+    sizes = contacts.index.to_numpy()
+    blue = [line for line in lines(panel, color=TYPE_COLOUR["BAM2"], marker="None")]
+    solid = [line for line in blue if line.get_linestyle() == "-"]
+    dashed = [line for line in blue if line.get_linestyle() == "--"]
+    # Grains on the law: the fitted line is the geometric mean of their omega.
+    expected = np.exp(here.assign(y=np.log(here["omega_disr"])).groupby("a_eff")["y"].mean())
+    np.testing.assert_allclose(solid[0].get_ydata(), expected, rtol=1e-9)
+    np.testing.assert_allclose(dashed[0].get_ydata(), groups["cut_bound"].mean())
+    printed = [line for line in panel.get_lines() if line.get_marker() == "^" and line.get_linestyle() == "-"]
+    args = (sizes, m.surface_energy, m.density, 20e-9, contacts, 1.0)
+    np.testing.assert_allclose(printed[0].get_ydata(), eq33(*args, *TABLE_3["q-S", "BAM2"]))
+
+
+def test_figure7_goes_without_a_fit():
+    table = make_table(sizes=SIZES, seeds=2)
+    n = [len(lines(figure7(table, fit).axes[0], linestyle="-")) for fit in (None, fit_ensemble(table, n_bootstrap=5))]
+    assert n == [3, 6]  # the printed ones, and the fitted ones
+
+
+@pytest.mark.parametrize(
+    "values, expected",
+    [([4.76e-16, 1e-17], -16), ([2e12], 12), ([500.0], 0), ([0.0, np.nan], 0), ([], 0), ([1e5], 5)],
+)
+def test_power_of_ten(values, expected):
+    exponent, text = power_of_ten(values)
+    assert exponent == expected and (f"{{{expected}}}" in text) == (expected != 0)
+
+
+@pytest.mark.parametrize("at", [0.03, 0.5, 0.97])
+def test_arrow_and_its_text_stay_in_the_panel(at, monkeypatch):
+    run = make_run(1e8, gain=0)
+    k = np.flatnonzero(run["omega"].values < 0.4e8)[-1] if at < 0.1 else int(at * (run.sizes["record"] - 1))
+    run["n_contacts"].values[k] = 2 * run.attrs["initial_n_contacts"]
+    figure = figure4([run])
+    (box,) = [box for text, box in drawn_texts(figure, monkeypatch) if "greatest" in text.get_text()]
+    panel = figure.axes[1].bbox
+    assert panel.x0 <= box.x0 and box.x1 <= panel.x1 and panel.y0 <= box.y0 and box.y1 <= panel.y1
+
+
+@pytest.mark.parametrize("values, expected", [([15.0], "10"), ([3e8, 9e8], r"$5\times10^{8}$"), ([1, 1e4], "$10^{4}$")])
+def test_logarithmic_axes_have_room_and_numbers(values, expected, monkeypatch):
+    figure = Figure()
+    axes = figure.subplots()
+    axes.set_yscale("log")
+    axes.plot(range(len(values)), values, "o")
+    logarithmic(axes.yaxis)
+    low, high = axes.get_ylim()
+    assert low < min(values) and high > max(values) and np.log10(high / low) >= 0.6 - 1e-9
+    assert expected in [text.get_text() for text, _ in drawn_texts(figure, monkeypatch)]
+
+
+def test_settings_of_the_user_stay(tmp_path):
+    with matplotlib.rc_context({"font.size": 31, "axes.facecolor": "red"}):
+        figure = figure2(make_table(sizes=SIZES, seeds=1))
+        save(figure, tmp_path / "a.png")
+        assert matplotlib.rcParams["font.size"] == 31
+        assert figure.axes[0].get_facecolor()[:3] == (1.0, 1.0, 1.0)
+
+
+def test_save_names_the_suffix_it_does_not_know(tmp_path):
+    with pytest.raises(InputError, match="must end in .pdf, .png or .svg"):
+        save(figure4([make_run()]), tmp_path / "figure.bmp")
+    assert not list(tmp_path.iterdir())
+
+
+def save_some(folder):
+    """Two figures that between them use all that the others use."""
+    table = make_table(sizes=SIZES, seeds=2)
+    for name, figure in {
+        "figure4": figure4(cell_of_runs(2)),
+        "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
+    }.items():
+        save(figure, Path(folder) / f"{name}.pdf", Path(folder) / f"{name}.png")
+
+
+SCRIPT = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from test_figures import save_some
+save_some(sys.argv[2])
+"""
+
+
+def test_files_repeat_to_the_last_byte(tmp_path):
+    """Also in another process, with other hashes of strings."""
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    there.mkdir()
+    environment = os.environ | {"PYTHONHASHSEED": "4711", "SOURCE_DATE_EPOCH": "1"}
+    arguments = [sys.executable, "-c", SCRIPT, str(Path(__file__).parent), str(there)]
+    subprocess.run(arguments, check=True, env=environment)
+    save_some(here)
+    digests = [
+        {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
+        for folder in (here, there)
+    ]
+    assert digests[0] == digests[1] and len(digests[0]) == 4
+    content = (here / "figure7.pdf").read_bytes()
+    assert content.startswith(b"%PDF-") and b"CreationDate" not in content

@@ -1,0 +1,121 @@
+import math
+
+import numpy as np
+import pytest
+
+from ratd.errors import InputError
+from ratd.grain import Grain
+from ratd.materials import Material, equilibrium_compression, get_material
+from ratd.shape import enclosing_radius
+
+QUARTZ = get_material("q-S")
+DELTA_0 = equilibrium_compression(10e-9, QUARTZ.surface_energy, QUARTZ.reduced_modulus)
+
+
+def chain(n=3, compression=1.0, a=20e-9):
+    """Equal monomers in a row along x, each contact compressed by so many equilibrium compressions of 20 nm."""
+    position = np.zeros((n, 3))
+    position[:, 0] = np.arange(n) * (2 * a - compression * DELTA_0)
+    return position, np.full(n, a)
+
+
+def test_a_chain():
+    position, radius = chain(4)
+    grain = Grain(position, radius, "q-S", type="chain", seed=3)
+    np.testing.assert_array_equal(grain.contacts, [[0, 1], [1, 2], [2, 3]])
+    assert grain.contacts.dtype == np.int64
+    assert (grain.n_monomers, grain.n_contacts, grain.type, grain.seed) == (4, 3, "chain", 3)
+    assert grain.material is QUARTZ
+    np.testing.assert_allclose(grain.mass, 4 / 3 * math.pi * 2650.0 * 20e-9**3)
+    assert grain.effective_radius == pytest.approx(4 ** (1 / 3) * 20e-9)
+    assert grain.a_eff == grain.effective_radius
+    assert grain.enclosing_radius == pytest.approx(enclosing_radius(position, radius))
+    assert grain.shape.mean_coordination == 1.5
+    assert "n_monomers=4" in repr(grain)
+
+
+def test_the_arrays_are_contiguous_copies():
+    position, radius = chain(3)
+    grain = Grain(np.asfortranarray(position), radius, "q-S")
+    position[0] = radius[0] = 7.0
+    assert grain.position.flags.c_contiguous and grain.position.dtype == np.float64
+    assert np.all(grain.position[0] == 0.0) and grain.radius[0] == 20e-9
+
+
+def test_lists_and_whole_numbers_are_taken():
+    soft = Material("soft", 1e-9, 1e9, 0.3, 1000.0)
+    grain = Grain([[0, 0, 0], [0, 0, 2]], [1, 1], soft)
+    assert grain.position.dtype == np.float64
+    assert grain.n_contacts == 1
+
+
+@pytest.mark.parametrize("compression", [-0.09, 0.0, 1.0, 2.9])
+def test_contacts_near_equilibrium_are_taken(compression):
+    assert Grain(*chain(3, compression), "q-S").n_contacts == 2
+
+
+def test_the_tolerances_scale_with_each_pair():
+    # A gap of 0.09 of the equilibrium compression of two large monomers is too wide for two small ones.
+    large = equilibrium_compression(50e-9, QUARTZ.surface_energy, QUARTZ.reduced_modulus)
+    small = equilibrium_compression(5e-9, QUARTZ.surface_energy, QUARTZ.reduced_modulus)
+    assert 0.09 * large > 0.1 * small
+    assert Grain([[0, 0, 0], [0, 0, 200e-9 + 0.09 * large]], [100e-9] * 2, "q-S").n_contacts == 1
+    with pytest.raises(InputError, match="2 pieces"):
+        Grain([[0, 0, 0], [0, 0, 20e-9 + 0.09 * large]], [10e-9] * 2, "q-S")
+
+
+@pytest.mark.parametrize("compression", [3.1, 100.0])
+def test_overlapping_monomers_are_refused(compression):
+    position, radius = chain(3)
+    position[2, 0] -= (compression - 1.0) * DELTA_0
+    with pytest.raises(InputError, match=f"Monomers 1 and 2 overlap by {compression:g} equilibrium compressions"):
+        Grain(position, radius, "q-S")
+
+
+def test_an_aggregate_in_two_pieces_is_refused():
+    position, radius = chain(5)
+    position[3:, 0] += 1.2 * DELTA_0
+    with pytest.raises(InputError, match="in 2 pieces; it must be in one"):
+        Grain(position, radius, "q-S")
+
+
+def test_one_monomer_inside_another_is_refused():
+    with pytest.raises(InputError, match="overlap"):
+        Grain(np.zeros((2, 3)), [50e-9, 10e-9], "q-S")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda x, a: (x[:, :2], a), r"shape \(3, 2\)"),
+        (lambda x, a: (x, a[:2]), r"must be \(n, 3\) and \(n,\)"),
+        (lambda x, a: (x.ravel(), a), r"must be \(n, 3\) and \(n,\)"),
+        (lambda x, a: (x, a[:, None]), r"must be \(n, 3\) and \(n,\)"),
+        (lambda x, a: (x[:1], a[:1]), "at least 2"),
+        (lambda x, a: (x[:0], a[:0]), "at least 2"),
+        (lambda x, a: (np.where(np.arange(3)[:, None] == 1, np.nan, x), a), r"position\[1\]"),
+        (lambda x, a: (np.where(np.arange(3)[:, None] == 2, np.inf, x), a), r"position\[2\]"),
+        (lambda x, a: (x, a * [1, np.nan, 1]), r"radius\[1\]"),
+        (lambda x, a: (x, a * [1, 1, 0]), r"radius\[2\] is 0; every radius must be above 0"),
+        (lambda x, a: (x, a * [-1, 1, 1]), r"radius\[0\]"),
+        (lambda x, a: ("here", a), "position is not an array of numbers"),
+        (lambda x, a: (x, [1e-8, "b", 1e-8]), "radius is not an array of numbers"),
+    ],
+)
+def test_unusable_arrays_are_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        Grain(*change(*chain(3)), "q-S")
+
+
+def test_an_unknown_material_is_refused():
+    with pytest.raises(InputError, match="allowed are a-C"):
+        Grain(*chain(3), "granite")
+
+
+def test_a_eff_must_agree_with_the_radii():
+    position, radius = chain(3)
+    a_eff = 3 ** (1 / 3) * 20e-9
+    assert Grain(position, radius, "q-S", a_eff=a_eff).a_eff == a_eff
+    for wrong in (a_eff * 1.001, math.nan):
+        with pytest.raises(InputError, match="a_eff"):
+            Grain(position, radius, "q-S", a_eff=wrong)

@@ -1,0 +1,44 @@
+# Ensemble: the table of all grains, statistics per cell, and the fit beside Table 3.
+
+
+rule ensemble:
+    input:
+        grains=rules.grains.input,
+        marks=[
+            f"<results>/disruption/{{drive}}/{material}/{type}/{size}nm.nc"
+            for material, type, size in PLAN.cells
+        ],
+    output:
+        table="<results>/ensemble/{drive}/grains.nc",
+        table_csv="<results>/ensemble/{drive}/grains.csv",
+        cells="<results>/ensemble/{drive}/cells.nc",
+        cells_csv="<results>/ensemble/{drive}/cells.csv",
+        fit="<results>/ensemble/{drive}/table3.nc",
+        fit_csv=report(
+            "<results>/ensemble/{drive}/table3.csv",
+            caption="../report/table3.rst",
+            category="Tables",
+            labels={"table": "Table 3", "drive": "{drive}"},
+        ),
+    log:
+        "<results>/logs/ensemble/{drive}.log",
+    benchmark:
+        "<results>/benchmarks/ensemble/{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    params:
+        code=CODE["ensemble"],
+        settings=lambda w: PLAN.ensemble(w.drive),
+    message:
+        "Fit the ensemble ({wildcards.drive})"
+    script:
+        "../scripts/ensemble.py"
+
+
+rule tables:
+    input:
+        expand("<results>/ensemble/{drive}/table3.csv", drive=PLAN.config["drives"]),

@@ -1,0 +1,154 @@
+# Figures of the paper, PDF for print and PNG for the screen.
+
+
+rule figure2:
+    input:
+        "<results>/ensemble/{drive}/grains.nc",
+    output:
+        pdf=report(
+            "<results>/figures/figure2_{drive}.pdf",
+            caption="../report/figure2.rst",
+            category="Figures",
+            labels={"figure": "2", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure2_{drive}.png",
+            caption="../report/figure2.rst",
+            category="Figures",
+            labels={"figure": "2", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure2_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure2_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure2"],
+        settings=lambda w: PLAN.figure(2, w.drive),
+    message:
+        "Draw figure 2, the grains as grown ({wildcards.drive})"
+    script:
+        "../scripts/figure2.py"
+
+
+rule figure4:
+    input:
+        PLAN.figure4_files(
+            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        ),
+    output:
+        pdf=report(
+            "<results>/figures/figure4_{drive}.pdf",
+            caption="../report/figure4.rst",
+            category="Figures",
+            labels={"figure": "4", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure4_{drive}.png",
+            caption="../report/figure4.rst",
+            category="Figures",
+            labels={"figure": "4", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure4_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure4_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure4"],
+        settings=lambda w: PLAN.figure(4, w.drive),
+    message:
+        "Draw figure 4, one cell coming apart ({wildcards.drive})"
+    script:
+        "../scripts/figure4.py"
+
+
+rule figure6:
+    input:
+        "<results>/ensemble/{drive}/grains.nc",
+    output:
+        pdf=report(
+            "<results>/figures/figure6_{drive}.pdf",
+            caption="../report/figure6.rst",
+            category="Figures",
+            labels={"figure": "6", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure6_{drive}.png",
+            caption="../report/figure6.rst",
+            category="Figures",
+            labels={"figure": "6", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure6_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure6_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure6"],
+        settings=lambda w: PLAN.figure(6, w.drive),
+    message:
+        "Draw figure 6, axis ratios ({wildcards.drive})"
+    script:
+        "../scripts/figure6.py"
+
+
+rule figure7:
+    input:
+        table="<results>/ensemble/{drive}/grains.nc",
+        fit="<results>/ensemble/{drive}/table3.nc",
+    output:
+        pdf=report(
+            "<results>/figures/figure7_{drive}.pdf",
+            caption="../report/figure7.rst",
+            category="Figures",
+            labels={"figure": "7", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure7_{drive}.png",
+            caption="../report/figure7.rst",
+            category="Figures",
+            labels={"figure": "7", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure7_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure7_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure7"],
+        settings=lambda w: PLAN.figure(7, w.drive),
+    message:
+        "Draw figure 7, omega of disruption against size ({wildcards.drive})"
+    script:
+        "../scripts/figure7.py"
+
+
+rule figures:
+    input:
+        expand(
+            "<results>/figures/figure{number}_{drive}.{format}",
+            number=PLAN.figures,
+            drive=PLAN.config["drives"],
+            format=["pdf", "png"],
+        ),

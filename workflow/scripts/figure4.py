@@ -1,0 +1,9 @@
+"""Draw figure 4."""
+
+from ratd import io
+from ratd.figures import figure4, save
+from ratd.jobs import Job
+
+with Job(snakemake) as job:
+    runs = [run for path in snakemake.input for run in io.read_runs(path)]
+    save(figure4(runs, drive=job.settings["drive"]), *snakemake.output)

@@ -1,0 +1,13 @@
+"""Draw figure 7."""
+
+from ratd import io
+from ratd.figures import figure7, save
+from ratd.jobs import Job
+from ratd.materials import Material
+
+with Job(snakemake) as job:
+    table = io.read_table(snakemake.input.table)
+    fit = io.read_fit(snakemake.input.fit)
+    materials = {name: Material(**constants) for name, constants in job.settings["materials"].items()}
+    figure = figure7(table, fit, drive=job.settings["drive"], materials=materials)
+    save(figure, *snakemake.output)

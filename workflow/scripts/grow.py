@@ -1,0 +1,25 @@
+"""Grow the grains of one block."""
+
+from ratd import io
+from ratd.bound import cut_bound
+from ratd.growth import RadiusDistribution, grow
+from ratd.jobs import Job
+from ratd.materials import Material
+
+with Job(snakemake) as job:
+    material = Material(**job.settings["material"])
+    radii = RadiusDistribution(**job.settings["radii"])
+    first, last = (int(seed) for seed in snakemake.wildcards.seeds.split("-"))
+
+    def make(seed, checkpoint):
+        grain = grow(
+            job.settings["type"],
+            job.settings["a_eff"],
+            material,
+            seed,
+            distribution=radii,
+            migration=job.settings["migration"],
+        )
+        return io.grain_row(grain, cut_bound(grain))
+
+    job.block(snakemake.output[0], "grains", material, range(first, last + 1), make)
