@@ -16,7 +16,7 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import (
     DT, DT_DRIFT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FRAGMENTS_LOST, LANES, LARGEST_CONTACTS,
-    LARGEST_MONOMERS, MONOMERS, OMEGA, PULL_OFF, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, X,
+    LARGEST_MONOMERS, MASS, MONOMERS, OMEGA, PULL_OFF, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, X,
 )  # fmt: skip
 from ratd.engine.measure import (
     dissipated,
@@ -163,8 +163,9 @@ def spin_up(
     max_steps : int, optional
         End after so many steps.
     records : int
-        Records are evenly spaced in omega, by omega_1/records up to 2 omega_1; for each octave above the spacing
-        doubles, so that a small remnant, which holds to hundreds of omega_1, costs few records.
+        Records of each octave of omega above the cut bound omega_1. They are evenly spaced in omega, by
+        omega_1/(2 records) up to omega_1; for each octave above the spacing doubles, so that a small remnant, which
+        holds to hundreds of omega_1, costs few records.
     snapshot_every : int
         Keep positions, fragments and forces of all monomers at every so many records; 0 for never.
     checkpoint : path-like, optional
@@ -176,7 +177,8 @@ def spin_up(
     Returns
     -------
     xarray.Dataset
-        Dimensions ``record``, ``fragment`` (those that left, in their order), ``snapshot`` and ``monomer``; the
+        Dimensions ``record``, ``fragment`` (those that left, in their order, then those cut off but still near at the
+        end), ``snapshot`` and ``monomer``; the
         attributes tell the settings, ``steps``, ``timestep`` [s], ``end_reason``, ``cut_bound`` [rad/s] and the
         state after relaxation (``initial_...``).
 
@@ -214,6 +216,8 @@ def spin_up(
     while reason is None:
         goal = min(_edge(len(rows), omega_1, records), OMEGA_RAT)
         state, code = _advance(state, motion, goal, steps_goal, fewest, timestep_factor, implicit)
+        if code == FEW_CONTACTS:
+            _let_go(state)
         rows.append(_record(state, grain.material.density))
         if not np.isfinite(rows[-1][:6]).all():
             raise RuntimeError(f"the integration failed at omega = {rows[-1][0]:.3e} rad/s: values are not finite")
@@ -277,10 +281,21 @@ def _advance(state, *arguments):
         state = with_room(state, 2 * len(state.pair_i))
 
 
+def _let_go(state):
+    """Note the fragments that are still near at the end as lost: the masses of all fragments add up to the grain's."""
+    rows = monomer_rows(state)
+    fragment = state.fragment[: len(rows)]
+    for label in range(1, fragment.max() + 1):
+        members = fragment == label
+        entry = state.counter[FRAGMENTS_LOST]
+        state.lost[entry] = rows[members, MASS].sum(), members.sum(), state.scalar[OMEGA], state.scalar[TIME]
+        state.counter[FRAGMENTS_LOST] += 1
+
+
 def _edge(number, omega_1, records):
-    """Angular velocity [rad/s] of a record: evenly spaced up to 2 omega_1, then in each octave."""
+    """Angular velocity [rad/s] of a record: evenly spaced up to omega_1 by omega_1/(2 records), then in each octave."""
     octave = max(0, (number - records - 1) // records)
-    return 2.0**octave * omega_1 * (number - octave * records) / records
+    return 2.0**octave * omega_1 * (number - octave * records) / (2 * records)
 
 
 def _record(state, density):

@@ -221,7 +221,15 @@ def residual_force(state):
     """Greatest net force on any monomer [N] in a frame at rest; torques count as force times radius."""
     scratch = np.zeros(SCRATCH_SIZE)
     contact_forces(
-        state.monomer, state.force, state.contact, state.pair_i, state.pair_j, scratch, state.counter[CONTACTS], 0.0, 0.0
+        state.monomer,
+        state.force,
+        state.contact,
+        state.pair_i,
+        state.pair_j,
+        scratch,
+        state.counter[CONTACTS],
+        0.0,
+        0.0,
     )
     greatest = greatest_residual(state)
     state.force[:] = 0.0

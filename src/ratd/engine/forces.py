@@ -81,12 +81,13 @@ def _compute(contact, scratch, start, count, dt_drift, dt):
         wjz = scratch[WJZ + q]
         nix, niy, niz = rotate_pointer(contact[NIX + k], contact[NIY + k], contact[NIZ + k], h * wix, h * wiy, h * wiz)
         njx, njy, njz = rotate_pointer(contact[NJX + k], contact[NJY + k], contact[NJZ + k], h * wjx, h * wjy, h * wjz)
-        # Twisting turns about the mean of the old and the new direction, which keeps the scheme second order.
-        phi = contact[PHI + k] + h * (
-            (wix - wjx) * (ncx + contact[NCX + k])
-            + (wiy - wjy) * (ncy + contact[NCY + k])
-            + (wiz - wjz) * (ncz + contact[NCZ + k])
-        )
+        # Mean of the old and the new direction: the last move was along it, which keeps twisting second order, and a
+        # pair that turns as a whole free of damping.
+        mx = 0.5 * (ncx + contact[NCX + k])
+        my = 0.5 * (ncy + contact[NCY + k])
+        mz = 0.5 * (ncz + contact[NCZ + k])
+        phi = contact[PHI + k] + dt_drift * ((wix - wjx) * mx + (wiy - wjy) * my + (wiz - wjz) * mz)
+        receding = scratch[DVX + q] * mx + scratch[DVY + q] * my + scratch[DVZ + q] * mz
         contact[NCX + k] = ncx
         contact[NCY + k] = ncy
         contact[NCZ + k] = ncz
@@ -100,7 +101,6 @@ def _compute(contact, scratch, start, count, dt_drift, dt):
         contact[NORMAL + k] = normal
         x = s * s
         damping = contact[DAMPING + k] * x / (1.0 + dt * x * contact[DAMPING_RATE + k])
-        receding = scratch[DVX + q] * ncx + scratch[DVY + q] * ncy + scratch[DVZ + q] * ncz
         contact[E_DAMP + k] += dt * damping * receding * receding
         normal -= damping * receding
 
@@ -123,7 +123,7 @@ def _compute(contact, scratch, start, count, dt_drift, dt):
 
         k_t = contact[K_TWIST + k]
         kept = min(max(phi, -TWISTING_LIMIT), TWISTING_LIMIT)
-        contact[E_TWIST + k] += 0.5 * k_t * (phi * phi - kept * kept)
+        contact[E_TWIST + k] += 0.5 * k_t * (phi - kept) * (phi + kept)
         contact[PHI + k] = kept
         contact[NIX + k] = nix
         contact[NIY + k] = niy

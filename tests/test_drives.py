@@ -1,0 +1,105 @@
+"""Spin-up laws, and the equations of motion of a single free monomer in the turning frame."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ratd.drives import OMEGA_RAT, angular_velocity, kick_and_drift, make_drive
+from ratd.engine import layout
+from ratd.errors import InputError
+
+
+def test_constant_epsilon_law():
+    drive = make_drive("prescribed", omega_1=1e8, epsilon=0.02)
+    assert angular_velocity(drive, 0.0)[0] == 0.0
+    times = np.linspace(0, 1.9 / (0.02 * 1e8), 2001)
+    omega, slope = np.array([angular_velocity(drive, t) for t in times]).T
+    np.testing.assert_allclose(slope, 0.02 * np.maximum(omega, 1e8) ** 2, rtol=1e-9)
+    numerical = np.gradient(omega, times)
+    np.testing.assert_allclose(numerical[1:-1], slope[1:-1], rtol=2e-3)
+    assert omega[1000] < 1e8 * (1 + 1e-9) < omega[1100]
+
+
+def test_exponential_law_is_eq_24():
+    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=1e15)
+    tau = OMEGA_RAT / 1e15
+    for t in (0.0, 1e-9, 1e-5, 1e-4):
+        omega, slope = angular_velocity(drive, t)
+        assert omega == pytest.approx(OMEGA_RAT * (1 - math.exp(-t / tau)), rel=1e-9)
+        assert slope == pytest.approx(OMEGA_RAT / tau * math.exp(-t / tau), rel=1e-12)
+
+
+def free_monomer(position, velocity, spin):
+    monomer = np.zeros(layout.ROW)
+    monomer[0:3], monomer[4:7], monomer[8:11] = position, velocity, spin
+    monomer[int(layout.INV_MASS)] = monomer[int(layout.INV_INERTIA)] = 1.0
+    return monomer
+
+
+def test_free_monomer_goes_straight_in_the_inertial_frame():
+    """Centrifugal, Coriolis and Euler terms, and those of the spin, in a frame that turns ever faster."""
+    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=3e16)._replace(torque=False)
+    x_0, v_0, w_0 = np.array([1e-7, 0, 2e-8]), np.array([3.0, 7.0, -1.0]), np.array([2e7, -3e7, 4e7])
+    errors = []
+    for steps in (500, 1000):
+        dt = 2e-9 / steps
+        # velocities stand half a step before the positions
+        back = angular_velocity(drive, 0.0)[1] * dt / 2
+        v = v_0 - np.cross([0, 0, back], x_0)
+        v += np.array([back * -x_0[1], back * x_0[0], 0.0])
+        monomer, force = free_monomer(x_0, v, w_0), np.zeros(layout.FORCE_ROW)
+        for step in range(steps):
+            omega, domega = angular_velocity(drive, step * dt)
+            kick_and_drift(monomer, force, 1, dt, omega, domega, 0.0, drive)
+        t = steps * dt
+        tau = OMEGA_RAT / 3e16
+        angle = OMEGA_RAT * (t + tau * math.expm1(-t / tau))
+        turn = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+        errors.append(np.abs(turn @ monomer[0:3] - (x_0 + v_0 * t)).max() / np.linalg.norm(v_0 * t))
+        spin = turn @ monomer[8:11] + [0, 0, angular_velocity(drive, t)[0]]
+        np.testing.assert_allclose(spin, w_0, atol=2e-3 * 6e7)
+    assert angle > 0.05
+    assert errors[0] < 1e-3 and errors[1] < 0.6 * errors[0], errors
+
+
+def test_literal_frame_lacks_torque_and_spin_terms():
+    literal = make_drive("literal", omega_1=1e8, angular_acceleration=1e15)
+    assert not literal.torque and not literal.spin_terms and literal.explicit_coriolis
+    assert not make_drive("literal", omega_1=1e8, angular_acceleration=1e15, coriolis="exact").explicit_coriolis
+    monomer, force = free_monomer([1e-7, 0, 0], [0, 0, 0], [1e7, 0, 0]), np.zeros(layout.FORCE_ROW)
+    kick_and_drift(monomer, force, 1, 1e-12, 1e9, 1e15, 0.0, literal)
+    np.testing.assert_array_equal(monomer[8:11], [1e7, 0, 0])
+    np.testing.assert_allclose(monomer[4:7], [1e18 * 1e-7 * 1e-12, -1e15 * 1e-7 * 1e-12, 0.0], rtol=1e-12)
+
+
+def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
+    """A free monomer at rest in the inertial frame: the explicit term drives it outwards (physics.md Sect. 8)."""
+    speeds = {}
+    for coriolis in ("explicit", "exact"):
+        drive = make_drive("literal", omega_1=1e8, epsilon=0.02, coriolis=coriolis)
+        omega, dt = 1e10, 1e-12
+        back = 0.5 * omega * dt  # the velocity stands half a step before the position
+        start = omega * 1e-7 * np.array([np.sin(back), -np.cos(back), 0.0])
+        monomer, force = free_monomer([1e-7, 0, 0], start, [0, 0, 0]), np.zeros(layout.FORCE_ROW)
+        for _ in range(30_000):
+            kick_and_drift(monomer, force, 1, dt, omega, 0.0, 0.0, drive)
+        speeds[coriolis] = np.hypot(monomer[0], monomer[1]) / 1e-7
+    assert speeds["exact"] == pytest.approx(1.0, abs=0.01)
+    assert speeds["explicit"] > 2.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"name": "torque"}, "drive is 'torque'"),
+        ({"name": "prescribed", "epsilon": None}, "Exactly one"),
+        ({"name": "prescribed", "angular_acceleration": 1e14}, "Exactly one"),
+        ({"name": "prescribed", "epsilon": 0.0}, "epsilon is 0.0"),
+        ({"name": "literal", "epsilon": None, "angular_acceleration": float("nan")}, "angular_acceleration is nan"),
+        ({"name": "literal", "coriolis": "implicit"}, "coriolis is 'implicit'"),
+    ],
+)
+def test_bad_drives_are_refused_in_one_sentence(arguments, words):
+    with pytest.raises(InputError, match=words):
+        make_drive(**{"omega_1": 1e8, "epsilon": 0.02} | arguments)
