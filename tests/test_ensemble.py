@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from ratd.marks import VARIABLES, disruption
 from ratd.ensemble import (
     COLUMNS,
     TABLE_3,
@@ -21,6 +20,7 @@ from ratd.ensemble import (
 )
 from ratd.errors import InputError
 from ratd.grain import Grain
+from ratd.marks import VARIABLES, disruption
 from ratd.materials import Material, get_material
 from synthetic_runs import make_run, make_table
 

@@ -15,7 +15,6 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from ratd.marks import disruption
 from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
 from ratd.errors import InputError
 from ratd.figures import figure2, figure4, figure6, figure7, save
@@ -31,6 +30,7 @@ from ratd.figures.style import (
     styled,
     type_style,
 )
+from ratd.marks import disruption
 from ratd.materials import get_material
 from synthetic_runs import make_run, make_table
 

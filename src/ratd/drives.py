@@ -84,9 +84,7 @@ def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriol
     if name not in DRIVES:
         raise InputError(f"drive is {name!r}; allowed are {', '.join(DRIVES)}.")
     if (epsilon is None) == (angular_acceleration is None):
-        raise InputError(
-            "Exactly one of epsilon and angular_acceleration is needed to say how fast the grain spins up."
-        )
+        raise InputError("Exactly one of epsilon and angular_acceleration must say how fast the grain spins up.")
     for word, value in (("epsilon", epsilon), ("angular_acceleration", angular_acceleration)):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")

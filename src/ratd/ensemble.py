@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ratd.marks import VARIABLES as MARK_COLUMNS
 from ratd.errors import InputError
 from ratd.grain import Grain
+from ratd.marks import VARIABLES as MARK_COLUMNS
 from ratd.materials import get_material
 
 TABLE_3 = {

@@ -60,7 +60,7 @@ def _farthest_move(state, reference):
 
 @jit
 def _near_pairs(state, far, reach):
-    """Pairs of the far list that are not in contact and closer than `reach`, as rows of (i, j), by their order there."""
+    """Pairs (i, j) of the far list that are not in contact and closer than `reach`, in the order of that list."""
     n = state.counter[MONOMERS]
     n_contacts = state.counter[CONTACTS]
     begin = np.zeros(n + 2, dtype=np.int64)

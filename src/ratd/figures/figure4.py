@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ratd.marks import LOSS, disruption
 from ratd.errors import InputError
 from ratd.figures.style import (
     GREY,
@@ -17,6 +16,7 @@ from ratd.figures.style import (
     styled,
     type_style,
 )
+from ratd.marks import LOSS, disruption
 from ratd.units import NM
 
 
