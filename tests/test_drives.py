@@ -82,11 +82,12 @@ def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
         back = 0.5 * omega * dt  # the velocity stands half a step before the position
         start = omega * 1e-7 * np.array([np.sin(back), -np.cos(back), 0.0])
         monomer, force = free_monomer([1e-7, 0, 0], start, [0, 0, 0]), np.zeros(layout.FORCE_ROW)
-        for _ in range(300_000):
+        for _ in range(100_000):
             kick_and_drift(monomer, force, 1, dt, omega, 0.0, 0.0, drive)
         speeds[coriolis] = np.hypot(monomer[0], monomer[1]) / 1e-7
-    assert speeds["exact"] == pytest.approx(1.0, abs=0.1)
-    assert speeds["explicit"] > 2.0
+    # the exact one is of second order: an acceleration of 0.4 (omega dt)^2 of the centrifugal one is left
+    assert speeds["exact"] == pytest.approx(1.0, abs=0.05)
+    assert speeds["explicit"] > 1.2
 
 
 @pytest.mark.parametrize(

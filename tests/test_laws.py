@@ -1,4 +1,4 @@
-"""Contact laws: the table of physics.md Sect. 3, forces as derivatives of potentials, limits that leave other modes alone."""
+"""Contact laws: table of physics.md Sect. 3, forces as derivatives of potentials, limits leave other modes alone."""
 
 import math
 

@@ -24,7 +24,7 @@ from ratd.errors import InputError
 PLUMBING = frozenset({"ratd", "ratd.schema", "ratd.io", "ratd.provenance", "ratd.config", "ratd.jobs"})
 """Modules outside every source hash: they carry numbers from a file to a function and back."""
 
-NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "scipy", "xarray", "netCDF4")
+NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")
 """Packages whose versions are written into every file."""
 
 _ROOT = Path(__file__).parent

@@ -49,7 +49,7 @@ RECORDS = {
     "mass": ("kg", "mass of the largest fragment", "f8"),
     "n_monomers": ("1", "number of monomers of the largest fragment", "i4"),
     "n_contacts": ("1", "number of contacts of the largest fragment", "i4"),
-    "total_stress": ("Pa", "sum of |F_N|/(pi r^2) over the contacts of the largest fragment, mean since last record", "f8"),
+    "total_stress": ("Pa", "sum of |F_N|/(pi r^2) over the contacts of the largest fragment, interval mean", "f8"),
     "axis_a": ("m", "shortest semi-axis of the ellipsoid with the same moments of inertia", "f8"),
     "axis_b": ("m", "middle semi-axis of the ellipsoid with the same moments of inertia", "f8"),
     "axis_c": ("m", "longest semi-axis of the ellipsoid with the same moments of inertia", "f8"),

@@ -38,7 +38,8 @@ def contact_state(compression, s):
     -------
     float
         Root of 3 s^4 - 2 s = delta/delta_0 on the stable branch. For a change of delta/delta_0 by 1e-3 since the
-        last step it fits the compression to 1e-9 where s > 0.63 (the greatest pull is at 0.794), and to 1e-4 up to the end of the branch.
+        last step it fits the compression to 1e-9 where s > 0.63 (the greatest pull is at 0.794), and to 1e-4 up to
+        the end of the branch.
 
     Notes
     -----
