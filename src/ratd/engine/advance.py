@@ -10,7 +10,7 @@ from ratd.engine.contacts import append_contact, contact_start, remove_contact, 
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.fragments import drop_departed, find_fragments
 from ratd.engine.layout import (
-    AXIS_INERTIA, COMPRESSION, CONTACTS, DOMEGA, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW,
+    COMPRESSION, CONTACTS, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW,
     SEARCHES, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, X, Y, Z,
 )  # fmt: skip
 from ratd.engine.measure import greatest_residual, total_stress
@@ -183,10 +183,9 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
             # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
             scalar[TORQUE_WORK] += (domega * dt + scalar[UNWIND]) * (inertia * omega + momentum)
             scalar[UNWIND] = -momentum / inertia
-        scalar[AXIS_INERTIA] = inertia
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
-        scalar[OMEGA], scalar[DOMEGA] = angular_velocity(drive, scalar[TIME])
+        scalar[OMEGA] = angular_velocity(drive, scalar[TIME])[0]
         counter[STEPS] += 1
 
         if ended > 0:

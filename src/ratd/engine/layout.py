@@ -51,19 +51,17 @@ FORCE_X, FORCE_Y, FORCE_Z, _, TORQUE_X, TORQUE_Y, TORQUE_Z, _ = (np.uint64(k) fo
 
 # --- scalars of a run ------------------------------------------------------------------------------------------------
 SCALARS = (
-    "time omega domega "  # [s], [rad/s], [rad/s2]
+    "time omega "  # [s], [rad/s]
     "dt "  # of the step to come [s]
     "dt_drift "  # with which the positions were last moved [s]
     "unwind "  # turns the largest fragment back to angular momentum zero [rad/s]
-    "inertia "  # of the largest fragment about the axis [kg m2]
     "torque_work "  # [J]
     "lost_slide lost_roll lost_twist lost_damp lost_contact "  # dissipated by contacts that are gone [J]
     "stress_sum stress_samples "  # of the recording interval
-    "travel "  # bound on how far any monomer went since the near pairs were chosen [m]
 ).split()
 (
-    TIME, OMEGA, DOMEGA, DT, DT_DRIFT, UNWIND, AXIS_INERTIA, TORQUE_WORK,
-    LOST_SLIDE, LOST_ROLL, LOST_TWIST, LOST_DAMP, LOST_CONTACT, STRESS_SUM, STRESS_SAMPLES, TRAVEL,
+    TIME, OMEGA, DT, DT_DRIFT, UNWIND, TORQUE_WORK,
+    LOST_SLIDE, LOST_ROLL, LOST_TWIST, LOST_DAMP, LOST_CONTACT, STRESS_SUM, STRESS_SAMPLES,
 ) = range(len(SCALARS))  # fmt: skip
 
 COUNTERS = "steps monomers contacts fragments_lost largest_monomers largest_contacts searches".split()
