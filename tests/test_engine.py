@@ -118,8 +118,8 @@ def test_forces_and_torques_are_derivatives_of_the_potentials(radii):
 
     def at_limit_free_state():
         state = state_of(grain)
-        with_field(state, layout.ZETA_C, 1.0)
-        with_field(state, layout.XI_C, 1.0)
+        with_field(state, layout.INV_ZETA2, 0.0)
+        with_field(state, layout.INV_XI2, 0.0)
         with_field(state, layout.NIX, 2e-3)
         with_field(state, layout.NJY, -3e-3)
         with_field(state, layout.PHI, 5e-3)
@@ -172,7 +172,7 @@ def test_momenta_are_conserved_with_all_dissipation_at_work():
 def elastic(grain, factor):
     """A gently shaken grain without damping and without limits."""
     state = shaken(grain, 1e-3, 1e5, timestep_factor=factor)
-    for field, value in ((layout.DAMPING, 0.0), (layout.ZETA_C, 1.0), (layout.XI_C, 10.0)):
+    for field, value in ((layout.DAMPING, 0.0), (layout.INV_ZETA2, 0.0), (layout.INV_XI2, 0.0)):
         with_field(state, field, value)
     return state
 

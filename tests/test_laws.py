@@ -160,16 +160,16 @@ def test_slipping_and_rolling_leave_each_other_alone(a_i, a_j):
         return np.array(tangential.sliding_displacement(a_i, *p_i, a_j, *p_j, *n_c)[1:])
 
     zeta = slide(n_i, n_j)
-    after = np.array(tangential.slide_back(0.7, a_i, *n_i, a_j, *n_j, *zeta)).reshape(2, 3)
+    after = np.array(tangential.slide_back(0.7, 1 / (a_i + a_j), *n_i, *n_j, *zeta)).reshape(2, 3)
     np.testing.assert_allclose(slide(*after), 0.3 * zeta, rtol=1e-10, atol=1e-20)
     np.testing.assert_allclose(after.sum(0), n_i + n_j, atol=1e-15)
 
-    after = np.array(tangential.roll_back(0.7, a_i, *n_i, a_j, *n_j)).reshape(2, 3)
+    after = np.array(tangential.roll_back(0.7, 1 / (a_i + a_j), a_i, *n_i, a_j, *n_j)).reshape(2, 3)
     np.testing.assert_allclose(after.sum(0), 0.3 * (n_i + n_j), rtol=1e-10, atol=1e-16)
     np.testing.assert_allclose(slide(*after), zeta, rtol=1e-10, atol=1e-22)
 
 
 def test_excess_is_what_lies_beyond_the_limit():
-    assert tangential.excess_fraction(4.0, 1.0) == pytest.approx(0.5)
-    assert tangential.excess_fraction(0.25, 1.0) == 0.0
-    assert tangential.excess_fraction(0.0, 1.0) == 0.0
+    assert tangential.excess_fraction(4.0) == pytest.approx(0.5, abs=1e-15)
+    assert [tangential.excess_fraction(square) for square in (0.0, 1e-300, 0.25, 1.0)] == [0.0] * 4
+    assert tangential.excess_fraction(1.0 + 1e-9) == pytest.approx(5e-10, abs=3e-16)

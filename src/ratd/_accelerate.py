@@ -1,12 +1,13 @@
 """The one place that holds the flags of every compiled function.
 
 numba's own cache notices a change of the file that a function stands in, but not of the files that it calls into.
-The cache folder is therefore keyed by the content of every source file that holds compiled code: a change in any of
-them compiles anew, a change of a figure does not.
+The cache folder is therefore keyed by the content of every source file that compiled code may depend on: a change in
+any of them compiles anew, a change of a figure does not.
 """
 
 import hashlib
 import os
+import re
 from functools import partial
 from pathlib import Path
 
@@ -15,13 +16,21 @@ import numpy as np
 
 
 def _source_digest():
-    digest = hashlib.sha256()
+    """Hash of the files with compiled code and of all files of the package that they import, directly or not."""
     root = Path(__file__).parent
-    for path in sorted(root.rglob("*.py")):
-        text = path.read_bytes()
-        if b"ratd._accelerate import" in text:
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(text)
+    names = {".".join(path.relative_to(root.parent).with_suffix("").parts): path for path in root.rglob("*.py")}
+    texts = {name: path.read_bytes() for name, path in names.items()}
+    wanted = [name for name, text in texts.items() if b"ratd._accelerate import" in text]
+    needed = set()
+    while wanted:
+        name = wanted.pop()
+        if name in texts and name not in needed:
+            needed.add(name)
+            wanted += [found.decode() for found in re.findall(rb"^from (ratd[\w.]*) import", texts[name], re.MULTILINE)]
+    digest = hashlib.sha256()
+    for name in sorted(needed):
+        digest.update(name.encode())
+        digest.update(texts[name])
     digest.update(f"numba {numba.__version__} numpy {np.__version__}".encode())
     return digest.hexdigest()[:16]
 

@@ -20,7 +20,7 @@ from ratd.neighbours import close_pairs
 REACHED, FEW_CONTACTS, STEPS_DONE, FULL = range(4)
 """Why `advance` returned: omega reached, few contacts left, number of steps reached, no room for a new contact."""
 
-STRESS_EVERY = 16
+STRESS_EVERY = 64
 """Steps between two samples of the total stress."""
 FAR, NEAR = 0.2, 0.02
 """Reach of the two lists of pairs that may come into contact, in mean monomer radii.

@@ -7,9 +7,9 @@ import numpy as np
 from ratd._accelerate import jit
 from ratd.engine.layout import (
     A_I, A_J, BLOCK, COMPRESSION, CONTACTS, DAMPING, DAMPING_RATE, DT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, INV_AREA,
-    INV_DELTA0, INV_MASS, K_ROLL, K_SLIDE, K_TWIST, LANES, LOST_CONTACT, LOST_DAMP, LOST_ROLL, LOST_SLIDE,
-    LOST_TWIST, MASS, MONOMERS, NCX, NCY, NCZ, N_FIELDS, NIX, NIY, NIZ, NJX, NJY, NJZ, NORMAL, PHI, PULL_OFF, RADIUS,
-    ROW, S, WX, WY, WZ, X, XI_C, Y, Z, ZETA_C,
+    INV_DELTA0, INV_MASS, INV_SUM, INV_XI2, INV_ZETA2, K_ROLL, K_SLIDE, K_TWIST, LANES, LOST_CONTACT, LOST_DAMP,
+    LOST_ROLL, LOST_SLIDE, LOST_TWIST, MASS, MONOMERS, NCX, NCY, NCZ, NIX, NIY, NIZ, NJX, NJY, NJZ, NORMAL, N_FIELDS,
+    PHI, PULL_OFF, RADIUS, ROW, S, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.laws.jkr import S_TOUCH, contact_state, damping_coefficient, dissipation_time, normal_force, normal_potential
 from ratd.laws.tangential import (
@@ -46,8 +46,6 @@ def clear_contacts(state, first, last):
         state.contact[at + S] = S_TOUCH
         state.contact[at + A_I] = 1.0
         state.contact[at + A_J] = 1.0
-        state.contact[at + ZETA_C] = 1.0
-        state.contact[at + XI_C] = 1.0
         state.pair_i[k] = idle
         state.pair_j[k] = idle + np.uint64(1)
 
@@ -98,12 +96,13 @@ def append_contact(state, i, j, drift_time, at_rest):
     state.pair_j[k] = np.uint64(j)
     contact[at + A_I] = a_i
     contact[at + A_J] = a_j
+    contact[at + INV_SUM] = 1.0 / (a_i + a_j)
     contact[at + INV_DELTA0] = 1.0 / delta0
     contact[at + PULL_OFF] = f_c
     contact[at + K_SLIDE] = sliding_stiffness(r0, material[SHEAR_MODULUS], nu)
-    contact[at + ZETA_C] = sliding_limit(r0, nu)
+    contact[at + INV_ZETA2] = 1.0 / sliding_limit(r0, nu) ** 2
     contact[at + K_ROLL] = rolling_stiffness(f_c, r)
-    contact[at + XI_C] = material[ROLLING_LIMIT] / r
+    contact[at + INV_XI2] = (r / material[ROLLING_LIMIT]) ** 2
     contact[at + K_TWIST] = twisting_stiffness(r0, material[SHEAR_MODULUS])
     contact[at + DAMPING] = damping_coefficient(r0, e_star, nu, material[VISCOUS_TIME])
     contact[at + DAMPING_RATE] = 0.0

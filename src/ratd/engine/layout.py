@@ -25,13 +25,15 @@ CONTACT_FIELDS = (
     "NORMAL "  # normal force without damping [N]
     "E_SLIDE E_ROLL E_TWIST E_DAMP "  # energy dissipated since the contact formed [J]
     # constants of the contact
-    "A_I A_J INV_DELTA0 PULL_OFF K_SLIDE ZETA_C K_ROLL XI_C K_TWIST DAMPING DAMPING_RATE INV_AREA"
+    "A_I A_J INV_SUM INV_DELTA0 PULL_OFF K_SLIDE INV_ZETA2 K_ROLL INV_XI2 K_TWIST "
+    "DAMPING DAMPING_RATE INV_AREA"
 ).split()
 N_FIELDS = len(CONTACT_FIELDS)
 BLOCK = N_FIELDS * LANES
 (
     NIX, NIY, NIZ, NJX, NJY, NJZ, NCX, NCY, NCZ, PHI, S, COMPRESSION, NORMAL, E_SLIDE, E_ROLL, E_TWIST, E_DAMP,
-    A_I, A_J, INV_DELTA0, PULL_OFF, K_SLIDE, ZETA_C, K_ROLL, XI_C, K_TWIST, DAMPING, DAMPING_RATE, INV_AREA,
+    A_I, A_J, INV_SUM, INV_DELTA0, PULL_OFF, K_SLIDE, INV_ZETA2, K_ROLL, INV_XI2, K_TWIST,
+    DAMPING, DAMPING_RATE, INV_AREA,
 ) = (np.uint64(k * LANES) for k in range(N_FIELDS))  # fmt: skip
 
 # --- contacts: what one block needs only during its step -------------------------------------------------------------

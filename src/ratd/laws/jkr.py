@@ -8,6 +8,7 @@ delta/delta_0 = 3 s^4 - 2 s.
 import math
 
 from ratd._accelerate import jit
+from ratd._fastmath import rough_reciprocal
 
 S_TOUCH = (2.0 / 3.0) ** (1.0 / 3.0)
 """s where delta = 0: two spheres that just touch jump to this contact radius (x = 0.763, force -8/9 F_C)."""
@@ -46,9 +47,9 @@ def contact_state(compression, s):
     physics.md Sect. 3; Eqs. 9, 12 and 23 of the paper.
     """
     s2 = s * s
-    s = s - (3.0 * s2 * s2 - 2.0 * s - compression) / max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR)
+    s = s - (3.0 * s2 * s2 - 2.0 * s - compression) * rough_reciprocal(max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR))
     s2 = s * s
-    return s - (3.0 * s2 * s2 - 2.0 * s - compression) / max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR)
+    return s - (3.0 * s2 * s2 - 2.0 * s - compression) * rough_reciprocal(max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR))
 
 
 @jit(forceinline=True)

@@ -10,11 +10,10 @@ Vectors are passed as three numbers each, so that the compiler can treat many co
 import math
 
 from ratd._accelerate import jit
+from ratd._fastmath import reciprocal_root
 
 TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
 """phi_c [rad], critical twisting angle (Sect. 6 of the paper)."""
-
-_TINY = 1e-300  # keeps 0/0 out of directions of vanishing displacements
 
 
 @jit
@@ -46,11 +45,13 @@ def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
 
 @jit(forceinline=True)
 def rotate_pointer(nx, ny, nz, tx, ty, tz):
-    """Turn a vector by the rotation whose half-angle vector is t = w dt/2 (Cayley's form, exact in length).
+    """Turn a vector by the rotation whose half-angle vector is t = w dt/2 (Cayley's form).
 
-    The turning angle is 2 atan|t|, i.e. |w| dt up to a relative error of (w dt)^2/12.
+    The turning angle is 2 atan|t|, i.e. |w| dt up to a relative error of (w dt)^2/12; the length is kept up to a
+    relative error of |t|^6.
     """
-    f = 2.0 / (1.0 + tx * tx + ty * ty + tz * tz)
+    square = tx * tx + ty * ty + tz * tz
+    f = 2.0 - 2.0 * square * (1.0 - square)  # 2/(1 + t^2)
     ux = ty * nz - tz * ny
     uy = tz * nx - tx * nz
     uz = tx * ny - ty * nx
@@ -82,36 +83,36 @@ def sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz):
 
 
 @jit(forceinline=True)
-def excess_fraction(square, limit):
+def excess_fraction(square):
     """Part of a displacement that lies beyond its limit: max(0, 1 - limit/|displacement|).
 
     Parameters
     ----------
     square : float
-        Squared length of the displacement.
-    limit : float
-        Critical length.
+        Square of the displacement over its limit.
     """
-    return max(0.0, 1.0 - limit / math.sqrt(square + _TINY))
+    return 1.0 - reciprocal_root(max(1.0, square))
 
 
 @jit(forceinline=True)
-def slide_back(fraction, a_i, nix, niy, niz, a_j, njx, njy, njz, zx, zy, zz):
+def slide_back(fraction, inv_sum, nix, niy, niz, njx, njy, njz, zx, zy, zz):
     """Pointers after the excess Delta = fraction * zeta has slipped: n_i -= Delta/(a_i+a_j), n_j += the same.
 
-    n_i + n_j, hence the rolling displacement, stays as it is. The pointers are no longer unit vectors.
+    `inv_sum` is 1/(a_i + a_j). n_i + n_j, hence the rolling displacement, stays as it is. The pointers are no longer
+    unit vectors.
     """
-    g = fraction / (a_i + a_j)
+    g = fraction * inv_sum
     return nix - g * zx, niy - g * zy, niz - g * zz, njx + g * zx, njy + g * zy, njz + g * zz
 
 
 @jit(forceinline=True)
-def roll_back(fraction, a_i, nix, niy, niz, a_j, njx, njy, njz):
+def roll_back(fraction, inv_sum, a_i, nix, niy, niz, a_j, njx, njy, njz):
     """Pointers after the excess Delta = fraction * R (n_i + n_j) has rolled off: n_k -= Delta/a_k.
 
-    a_i n_i - a_j n_j, hence the sliding displacement, stays as it is. The pointers are no longer unit vectors.
+    `inv_sum` is 1/(a_i + a_j). a_i n_i - a_j n_j, hence the sliding displacement, stays as it is. The pointers are no
+    longer unit vectors.
     """
-    g = fraction / (a_i + a_j)
+    g = fraction * inv_sum
     g_i = g * a_j  # R/a_i
     g_j = g * a_i
     x = nix + njx
