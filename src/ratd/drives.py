@@ -234,7 +234,8 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
         own = driven * monomer[r + INERTIA]
         angular_momentum += mass * (x * vy - y * vx) + own * wz
         inertia += mass * (x * x + y * y) + own
-        fastest = max(fastest, vx * vx + vy * vy + vz * vz)
+        speed = vx * vx + vy * vy + vz * vz
+        fastest = fastest if fastest > speed else speed  # a NaN stays
 
         monomer[r + VX] = vx
         monomer[r + VY] = vy

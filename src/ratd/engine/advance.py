@@ -17,8 +17,9 @@ from ratd.engine.measure import greatest_residual, total_stress
 from ratd.laws.jkr import COMPRESSION_END
 from ratd.neighbours import close_pairs
 
-REACHED, FEW_CONTACTS, STEPS_DONE, FULL = range(4)
-"""Why `advance` returned: omega reached, few contacts left, number of steps reached, no room for a new contact."""
+REACHED, FEW_CONTACTS, STEPS_DONE, FULL, NOT_FINITE = range(5)
+"""Why `advance` returned: omega reached, few contacts left, number of steps reached, no room for a new contact, a
+velocity that is no finite number."""
 
 STRESS_EVERY = 64
 """Steps between two samples of the total stress."""
@@ -123,7 +124,7 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
     Returns
     -------
     int
-        `REACHED`, `FEW_CONTACTS`, `STEPS_DONE`, or `FULL`: make room for contacts and call again.
+        `REACHED`, `FEW_CONTACTS`, `STEPS_DONE`, `NOT_FINITE`, or `FULL`: make room for contacts and call again.
     """
     scalar = state.scalar
     counter = state.counter
@@ -187,6 +188,8 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         scalar[TIME] += dt
         scalar[OMEGA] = angular_velocity(drive, scalar[TIME])[0]
         counter[STEPS] += 1
+        if not fastest < np.inf:
+            return NOT_FINITE
 
         if ended > 0:
             for k in range(counter[CONTACTS] - 1, -1, -1):
