@@ -45,6 +45,7 @@ include: "workflow/rules/spinup.smk"
 include: "workflow/rules/disruption.smk"
 include: "workflow/rules/ensemble.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/validation.smk"
 
 
 rule all:

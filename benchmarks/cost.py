@@ -1,0 +1,323 @@
+"""Part (b): what every (material, type, size) of the config costs, and the core-hours of the whole paper.
+
+One grain of each cell, the first seed, is spun up `coarse` times faster than the config says: with epsilon times
+`coarse` (constant-epsilon law) or the angular acceleration times `coarse` (exponential law), and with records thinned
+by as much, so that the work for records stands in the same proportion to the steps. Under both laws the time to any
+angular velocity is inversely proportional to epsilon or the acceleration, and so is the number of steps. But each
+contact that breaks costs a search for fragments and pairs, however fast the grain is spun up. A second run, `FASTER`
+times faster still, tells the two apart: seconds = a/coarse + b gives a + b for the full run, next to growth and
+relaxation, which are measured by themselves.
+
+What this leaves out is that a grain spun up faster breaks later, and that its pieces leave at other angular
+velocities. Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the
+error and correct the cells that are not run in full.
+
+Each finished run is a row of ``cost_runs.csv``; a run with the same source and settings is not made again.
+"""
+
+import math
+import time
+
+import numpy as np
+
+from benchmarks import machine, tables
+from ratd import grow, spin_up
+from ratd.bound import cut_bound
+from ratd.errors import InputError
+from ratd.growth import RadiusDistribution
+from ratd.spinup import relax
+from ratd.units import NM
+
+FASTER = 3
+"""How much faster still the second run of each cell is."""
+
+KEY = ("drive", "material", "type", "size_nm", "coarse", "pace", "timestep_factor", "records")
+"""Columns that say what was run. Rows of another machine or another source are dropped at the start."""
+
+
+def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say):
+    """Measure and write ``cost_runs.csv``, ``cost_cells.csv`` and ``cost_paper.csv``.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+        Folder of the results.
+    plan : ratd.config.Plan
+        The config.
+    drives : list of str
+    coarse : dict of str to int
+        How much faster each drive is spun up.
+    full_below : float
+        Cells whose projected full run takes less [s] are also run in full.
+    seeds : int
+        Seeds of a cell whose bound tells how far the grain that was run stands from the mean of its cell.
+    minutes : float
+        No new run is begun after so long; the next call goes on.
+    about : dict
+        Columns that each row gets: the machine and the versions.
+    say : callable
+        Told how far it is.
+
+    Returns
+    -------
+    bool
+        Whether everything is measured.
+    """
+    path = out / "cost_runs.csv"
+    end = time.monotonic() + 60.0 * minutes
+    rows = [
+        row for row in tables.read(path) if row["source"] == machine.source() and row["machine"] == about["machine"]
+    ]
+    _compile(plan, drives)
+    for drive in drives:
+        for level in (FASTER * coarse[drive], coarse[drive], 1):
+            for cell in plan.cells:
+                if level == 1 and not _cheap(rows, plan, drive, cell, coarse[drive], full_below):
+                    continue
+                if _find(rows, plan, drive, cell, level):
+                    continue
+                if time.monotonic() > end:
+                    say("cost: the time is up, the same command goes on from here")
+                    return False
+                row = _settings(plan, drive, cell, level) | _run(plan, drive, cell, level, say) | about
+                rows.append({key: str(value) for key, value in row.items()})
+                tables.write(path, rows)
+                say(
+                    f"cost: {drive} {' '.join(cell)} nm, {level} times as fast: {row['steps']} steps in "
+                    f"{row['seconds']:.1f} s, {row['us_per_step']:.2f} us per step"
+                )
+    cells = project(rows, plan, drives, coarse, _bounds(out, plan, seeds, about, say))
+    tables.write(out / "cost_cells.csv", cells)
+    tables.write(out / "cost_paper.csv", paper(cells, rows, plan, drives, coarse, about))
+    return True
+
+
+def _settings(plan, drive, cell, coarse):
+    spin = plan.spin_up_of(drive)
+    material, kind, size = cell
+    return {
+        "drive": drive,
+        "material": material,
+        "type": kind,
+        "size_nm": size,
+        "coarse": coarse,
+        # the config's own, not multiplied
+        "pace": f"{spin['angular_acceleration'] if spin['epsilon'] is None else spin['epsilon']:g}",
+        "timestep_factor": f"{spin['timestep_factor']:g}",
+        "records": spin["records"],
+        "source": machine.source(),
+    }
+
+
+def _grow(plan, cell, seed):
+    material, kind, size = cell
+    settings = plan.grow(*cell)
+    return grow(
+        kind, float(size) * NM, plan.materials[material], seed, distribution=RadiusDistribution(**settings["radii"]),
+        migration=settings["migration"],
+    )  # fmt: skip
+
+
+def _arguments(plan, drive, coarse):
+    spin = plan.spin_up_of(drive)
+    arguments = {
+        "drive": drive,
+        "timestep_factor": spin["timestep_factor"],
+        "records": max(1, round(spin["records"] / coarse)),
+    }
+    for name in ("epsilon", "angular_acceleration"):
+        arguments[name] = None if spin[name] is None else spin[name] * coarse
+    return arguments
+
+
+def _compile(plan, drives):
+    """Run something small, so that no row holds the time that compiling takes."""
+    grain = grow("BAM2", 60 * NM, "q-S", 0)
+    for drive in drives:
+        spin_up(grain, max_steps=1000, **_arguments(plan, drive, 1000))
+
+
+def _run(plan, drive, cell, coarse, say):
+    """The first grain of a cell that comes to rest, spun up `coarse` times as fast; processor times [s]."""
+    arguments = _arguments(plan, drive, coarse)
+    for seed in plan.seeds:
+        start = time.process_time()
+        grain = _grow(plan, cell, seed)
+        grown = time.process_time()
+        try:
+            relax(grain, timestep_factor=arguments["timestep_factor"])
+        except RuntimeError as error:
+            say(f"cost: {' '.join(cell)} nm, seed {seed} is left out: {error}")
+            continue
+        break
+    else:
+        raise InputError(f"no grain of {' '.join(cell)} nm comes to rest")
+    cut_bound(grain)
+    relaxed = time.process_time()
+    failed = ""
+    try:
+        run = spin_up(grain, max_steps=plan.spin_up_of(drive)["max_steps"], **arguments)
+    except RuntimeError as error:
+        # Far too fast a spin-up can break the integration; the report says so.
+        failed = f"failed: {error}"
+        run = spin_up(grain, max_steps=1, **arguments)
+    # spin_up relaxes the grain itself; that part does not scale with the pace.
+    seconds = max(time.process_time() - relaxed - (relaxed - grown), 1e-6)
+    return {
+        "seed": seed,
+        "monomers": grain.n_monomers,
+        "contacts": grain.n_contacts,
+        "cut_bound": run.attrs["cut_bound"],
+        "work_by_bound": _work(grain),
+        "omega_end": float(run["omega"][-1]),
+        "end": failed or run.attrs["end_reason"],
+        "growth_seconds": grown - start,
+        "relaxation_seconds": relaxed - grown,
+        "steps": run.attrs["steps"],
+        "seconds": seconds,
+        "us_per_step": seconds / run.attrs["steps"] * 1e6,
+    }
+
+
+def _find(rows, plan, drive, cell, coarse):
+    """The row of a run with the settings of the config, None where it was not made yet."""
+    wanted = _settings(plan, drive, cell, coarse)
+    return next((row for row in rows if all(row[key] == str(wanted[key]) for key in KEY)), None)
+
+
+def _cheap(rows, plan, drive, cell, coarse, full_below):
+    guess = projected(rows, plan, drive, cell, coarse)
+    return guess is not None and guess[0] < full_below
+
+
+def projected(rows, plan, drive, cell, coarse):
+    """Seconds and steps of the full run of a cell after its two fast ones; None where one of them is missing."""
+    fast, faster = (_find(rows, plan, drive, cell, level) for level in (coarse, FASTER * coarse))
+    if not (fast and faster) or fast["end"].startswith("failed"):
+        return None
+    seconds = float(fast["seconds"])
+    steps = int(fast["steps"])
+    # a/coarse, which timings that scatter may not make less than nothing or more than all
+    stepping = seconds
+    if not faster["end"].startswith("failed"):
+        stepping = min(max((seconds - float(faster["seconds"])) * FASTER / (FASTER - 1), 0.0), seconds)
+    return coarse * stepping + seconds - stepping, coarse * steps
+
+
+def _work(grain):
+    """A number that grows as the work of a run under the constant-epsilon law [s].
+
+    Such a run has at most 2/(epsilon omega_1 dt) steps, each of which goes through all contacts, and costs about as
+    much as 50 contacts besides. epsilon and dt hardly differ within a cell.
+    """
+    return (50 + grain.n_contacts) / cut_bound(grain)
+
+
+def _bounds(out, plan, seeds, about, say):
+    """Work that the bound predicts for each cell: mean over some of its seeds, and standard error of the mean."""
+    path = out / "cost_seeds.csv"
+    key = {"seeds": str(min(seeds, len(plan.seeds))), "source": machine.source(), "machine": about["machine"]}
+    rows = [row for row in tables.read(path) if all(row[name] == value for name, value in key.items())]
+    result = {(row["material"], row["type"], row["size_nm"]): row for row in rows}
+    for material, kind, size in plan.cells:
+        cell = (material, kind, size)
+        if cell in result:
+            continue
+        grains = [_grow(plan, cell, seed) for seed in plan.seeds[:seeds]]
+        work = np.array([_work(grain) for grain in grains])
+        error = work.std(ddof=1) / np.sqrt(len(work)) if len(work) > 1 else np.nan
+        row = {"material": material, "type": kind, "size_nm": size, **key}
+        row |= {"work_by_bound": work.mean(), "error": error}
+        result[cell] = {name: str(value) for name, value in row.items()}
+    tables.write(path, list(result.values()))
+    say(f"cost: bounds of {key['seeds']} seeds a cell")
+    return {cell: (float(row["work_by_bound"]), float(row["error"])) for cell, row in result.items()}
+
+
+def ratios(rows, plan, drive, coarse):
+    """Full seconds, projected seconds and both numbers of steps of the cells that were run both ways, (k, 4)."""
+    table = []
+    for cell in plan.cells:
+        guess, full = projected(rows, plan, drive, cell, coarse), _find(rows, plan, drive, cell, 1)
+        if coarse > 1 and guess and full:
+            table.append([float(full["seconds"]), float(full["steps"]), *guess])
+    return np.array(table).reshape(-1, 4)
+
+
+def project(rows, plan, drives, coarse, bounds):
+    """Cost of each cell with all its seeds, list of dict."""
+    cells = []
+    for drive in drives:
+        table = ratios(rows, plan, drive, coarse[drive])
+        correction = float(np.exp(np.log(table[:, 0] / table[:, 2]).mean())) if len(table) else 1.0
+        by_bound = plan.spin_up_of(drive)["epsilon"] is not None
+        for cell in plan.cells:
+            fast, full = _find(rows, plan, drive, cell, coarse[drive]), _find(rows, plan, drive, cell, 1)
+            best = full or fast
+            guess, guessed_steps = projected(rows, plan, drive, cell, coarse[drive]) or (np.nan, np.nan)
+            seconds = float(full["seconds"]) if full else guess * correction
+            steps = float(full["steps"]) if full else float(guessed_steps)
+            own = float(best["work_by_bound"])
+            factor, error = (part / own for part in bounds[cell]) if by_bound else (1.0, np.nan)
+            fixed = float(best["growth_seconds"]) + float(best["relaxation_seconds"])
+            cells.append(
+                {
+                    "drive": drive,
+                    "material": cell[0],
+                    "type": cell[1],
+                    "size_nm": cell[2],
+                    "monomers": int(best["monomers"]),
+                    "contacts": int(best["contacts"]),
+                    "run_in_full": "yes" if full else "no",
+                    "steps": steps,
+                    "us_per_step": seconds / steps * 1e6,
+                    "seconds_one_grain": seconds + fixed,
+                    "uncorrected_seconds_one_grain": guess + fixed,
+                    "mean_of_seeds_to_this": factor,
+                    "error_of_seeds_to_this": error,
+                    "core_hours_cell": len(plan.seeds) * (seconds * factor + fixed) / 3600.0,
+                }
+            )
+    return cells
+
+
+def paper(cells, rows, plan, drives, coarse, about):
+    """Core-hours of the whole config with each drive, and how far they can be trusted, list of dict."""
+    result = []
+    for drive in drives:
+        own = [cell for cell in cells if cell["drive"] == drive]
+        table = ratios(rows, plan, drive, coarse[drive])
+        logs = np.log(table[:, 0] / table[:, 2]) if len(table) else np.empty(0)
+        spin = plan.spin_up_of(drive)
+        missing = sum(math.isnan(cell["core_hours_cell"]) for cell in own)
+        own = [cell for cell in own if not math.isnan(cell["core_hours_cell"])]
+        total = sum(cell["core_hours_cell"] for cell in own)
+        first = len(plan.seeds) / 3600.0 * sum(cell["seconds_one_grain"] for cell in own)
+        uncorrected = len(plan.seeds) / 3600.0 * sum(cell["uncorrected_seconds_one_grain"] for cell in own)
+        errors = [
+            cell["core_hours_cell"] * cell["error_of_seeds_to_this"] / cell["mean_of_seeds_to_this"] for cell in own
+        ]
+        result.append(
+            {
+                "drive": drive,
+                "pace": "epsilon" if spin["epsilon"] is not None else "angular acceleration [rad/s2]",
+                "value": spin["epsilon"] if spin["epsilon"] is not None else spin["angular_acceleration"],
+                "timestep_factor": spin["timestep_factor"],
+                "coarse": coarse[drive],
+                "grains": len(own) * len(plan.seeds),
+                "cells_missing": missing,
+                "core_hours": float(total),
+                "error_of_seeds": float(np.sqrt(np.sum(np.square(errors)))),
+                "core_hours_first_seed": float(first),
+                "core_hours_uncorrected": float(uncorrected),
+                "part_run_in_full": sum(c["core_hours_cell"] for c in own if c["run_in_full"] == "yes") / float(total),
+                "cells_compared": len(table),
+                "full_to_projected_mean": float(np.exp(logs.mean())) if len(logs) else np.nan,
+                "full_to_projected_scatter": float(np.exp(logs.std(ddof=1))) if len(logs) > 1 else np.nan,
+                "full_to_projected_min": float(np.exp(logs.min())) if len(logs) else np.nan,
+                "full_to_projected_max": float(np.exp(logs.max())) if len(logs) else np.nan,
+                "full_steps_to_projected": float(table[:, 1].sum() / table[:, 3].sum()) if len(table) else np.nan,
+            }
+            | about
+        )
+    return result

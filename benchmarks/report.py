@@ -1,0 +1,295 @@
+"""``README.md`` and the figures, from the CSV files that are there."""
+
+import numpy as np
+import pandas as pd
+
+from benchmarks.cost import FASTER
+from benchmarks.scaling import LINEAR_FROM, exponent
+from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
+from ratd.io import atomic
+
+BLUE, ORANGE = "#0072B2", "#D55E00"
+MATERIAL_MARKERS = "osD^vP"
+
+
+def write(out):
+    """Write the report on what a folder of results holds.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+    """
+    text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
+    parts = [f"# Measured speed\n\n{text}\n"]
+    parts += [section(out) for section in (_kernel, _cost, _scaling)]
+    with atomic(out / "README.md") as part:
+        part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
+
+
+def table(head, rows):
+    """A markdown table; cells are texts."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines) + "\n"
+
+
+def _read(out, name):
+    path = out / f"{name}.csv"
+    return pd.read_csv(path, keep_default_na=True) if path.exists() else None
+
+
+def _where(data):
+    lines = []
+    for (machine, software, pinned), rows in data.groupby(["machine", "software", "pinned"], sort=False):
+        lines.append(f"Machine: {machine}; one core, {pinned}. {software}.")
+        if rows["quick"].eq("yes").any():
+            lines.append("**A quick run, which only shows that the benchmark works: its numbers mean nothing.**")
+        if rows["load"].max() > 1.3:
+            lines.append(
+                f"**Up to {rows['load'].max():.1f} processes were at work on the machine when this was begun: noisy.**"
+            )
+    return "\n".join(lines) + "\n"
+
+
+def _spread(values, digits=1):
+    """Median with the least and the greatest."""
+    return f"{np.median(values):.{digits}f} ({np.min(values):.{digits}f} - {np.max(values):.{digits}f})"
+
+
+def pair_ratios(case):
+    """LAMMPS over ratd for each pair of a case, (pairs,); empty without LAMMPS."""
+    both = case.pivot_table(index="pair", columns="code", values="ns_per_contact_step")
+    return (both["LAMMPS"] / both["ratd"]).to_numpy() if "LAMMPS" in both else np.empty(0)
+
+
+def _kernel(out):
+    data, small = _read(out, "kernel"), _read(out, "small")
+    if data is None or small is None:
+        return ""
+    rows = []
+    for (name, motion), case in data.groupby(["aggregate", "motion"], sort=False):
+        ratio = pair_ratios(case)
+        code = {key: part for key, part in case.groupby("code")}
+        own = code["ratd"]
+        peer = code.get("LAMMPS")
+        rows.append(
+            [
+                name, motion, case["monomers"].iloc[0], own["contacts"].iloc[-1], len(own),
+                _spread(own["ns_per_contact_step"]),
+                "-" if peer is None else _spread(peer["ns_per_contact_step"]),
+                "-" if peer is None else peer["contacts"].iloc[-1],
+                "-" if peer is None else _spread(ratio),
+            ]
+        )  # fmt: skip
+    peers = data[data["code"] == "LAMMPS"]
+    if len(peers):
+        text = [
+            f"LAMMPS {version} (size classes: {classes})"
+            for version, classes in peers[["version", "size_classes"]].drop_duplicates().itertuples(index=False)
+        ]
+        about = (
+            f"Peer: {'; '.join(text)}. Both codes step through the same aggregates, with the same step and number of "
+            "steps, one after the other on the same core; set-up is not counted. Processor time. "
+            "Median (least - greatest) over the pairs; the ratio is taken pair by pair."
+        )
+    else:
+        about = "LAMMPS was not measured: it was not there. Median (least - greatest) of processor time."
+    tiny = [
+        [kind, motion, case["contacts"].iloc[-1], len(case), _spread(case["us_per_step"], 2)]
+        for (kind, motion), case in small.groupby(["aggregate", "motion"], sort=False)
+    ]
+    draw_kernel(data, small, out / "kernel.png")
+    head = ["aggregate", "motion", "monomers", "contacts", "pairs", "ratd [ns]", "LAMMPS [ns]", "its contacts", "ratio"]
+    return "\n".join(
+        [
+            "## Kernel beside LAMMPS: ns per contact and step\n", _where(data), about + "\n", table(head, rows),
+            f"### {small['monomers'].iloc[0]} monomers: microseconds per step, all included\n",
+            table(["type", "motion", "contacts", "runs", "us per step"], tiny), "![kernel](kernel.png)\n",
+        ]
+    )  # fmt: skip
+
+
+@styled
+def draw_kernel(data, small, path):
+    """Every run as a point, beside LAMMPS, and of ten monomers."""
+    figure = new_figure(TWO_COLUMNS, 2.6, "Speed of one core: every run is a point")
+    left, right = figure.subplots(1, 2, width_ratios=(3, 2))
+    cases = list(data.groupby(["aggregate", "motion"], sort=False))
+    for place, (_, case) in enumerate(cases):
+        for code, colour, marker, shift in (("ratd", BLUE, "o", -0.12), ("LAMMPS", ORANGE, "s", 0.12)):
+            y = case.loc[case["code"] == code, "ns_per_contact_step"]
+            if len(y):
+                x = np.full(len(y), place + shift)
+                left.plot(x, y, marker, color=colour, mfc="none", label=code if place == 0 else None)
+        ratio = pair_ratios(case)
+        if len(ratio):
+            own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
+            text = f"{np.median(ratio):.1f} times"
+            left.annotate(text, (place, own * np.sqrt(np.median(ratio))), ha="center", va="center")
+    left.set_yscale("log")
+    names = [f"{name.removeprefix('aggregate_')}\n{motion}" for (name, motion), _ in cases]
+    left.set_xticks(range(len(cases)), names)
+    left.set_xlim(-0.5, len(cases) - 0.5)
+    left.tick_params(axis="x", which="both", length=0)
+    logarithmic(left.yaxis, 1.0)
+    left.set_ylabel("time per contact and step [ns]")
+    left.legend(loc="upper center", bbox_to_anchor=(0.5, 1.13), ncols=2)
+    cases = list(small.groupby(["aggregate", "motion"], sort=False))
+    for place, (_, case) in enumerate(cases):
+        right.plot(np.full(len(case), place), case["us_per_step"], "o", color=BLUE, mfc="none")
+    right.set_xticks(range(len(cases)), [f"{name}\n{motion.replace(' ', chr(10))}" for (name, motion), _ in cases])
+    right.set_xlim(-0.5, len(cases) - 0.5)
+    right.set_ylim(0, 1.25 * small["us_per_step"].max())
+    right.tick_params(axis="x", which="both", length=0)
+    right.set_ylabel(f"time per step of {small['monomers'].iloc[0]} monomers [µs]")
+    save(figure, path)
+
+
+def _cost(out):
+    cells, totals, runs = _read(out, "cost_cells"), _read(out, "cost_paper"), _read(out, "cost_runs")
+    if runs is None:
+        return ""
+    if cells is None or totals is None:
+        return "## Cost of the paper\n\nNot finished: the same command goes on.\n"
+    words = ["## Cost of the paper\n", _where(totals)]
+    for row in totals.itertuples():
+        compared = (
+            f"In the {row.cells_compared} cells that were also run in full, the full run took "
+            f"{row.full_to_projected_mean:.2f} times what the fast one projects (geometric mean; scatter from cell to "
+            f"cell a factor of {row.full_to_projected_scatter:.2f}, from {row.full_to_projected_min:.2f} to "
+            f"{row.full_to_projected_max:.2f}; number of steps, all of them together: {row.full_steps_to_projected:.2f}"
+            "). The cells that were not run in full are corrected by this mean. The correction comes from cells that "
+            "are cheap, i.e. small, and the expensive ones may differ from them by as much as these differ from each "
+            "other."
+            if row.cells_compared > 1
+            else "Not enough cells were run in full to tell how good the projection is."
+        )
+        scatter = row.full_to_projected_scatter
+        low, high = row.core_hours, row.core_hours
+        if np.isfinite(scatter):
+            rest = (1.0 - row.part_run_in_full) * row.core_hours
+            low, high = (row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
+        missing = f"**{row.cells_missing} cells are missing: their runs failed.** " if row.cells_missing else ""
+        seeds = (
+            f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
+            if row.pace == "epsilon"
+            else "How seeds differ within a cell is not known for this law. "
+        )
+        words.append(
+            f"**Drive `{row.drive}`, {row.pace} {row.value:g}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
+            f"core-hours** for {row.grains} grains ({low:.1f} to {high:.1f} if all cells not run in full were off by "
+            f"that scatter together). One grain a cell was run {row.coarse} and {FASTER * row.coarse} times "
+            f"as fast as the config says; what of its time grows with the steps was multiplied up, the rest was not. "
+            f"{missing}{compared} {seeds}"
+            f"Without the correction, first seeds only: {row.core_hours_uncorrected:.1f}. Of the total, "
+            f"{100 * row.part_run_in_full:.0f} % belong to cells whose grain was run in full.\n"
+        )
+    by = cells.pivot_table(index=["drive", "type"], columns="size_nm", values="core_hours_cell", aggfunc="sum")
+    words.append("Core-hours by type and size, all materials and seeds; growth and spin-up, not the start of jobs:\n")
+    words.append(
+        table(
+            ["drive", "type", *[f"{size:g} nm" for size in by.columns], "all"],
+            [[*key, *[f"{v:.2g}" for v in row], f"{row.sum():.3g}"] for key, row in by.iterrows()],
+        )
+    )
+    words.append("Every cell, with its steps and microseconds per step, is in `cost_cells.csv`.\n\n![cost](cost.png)\n")
+    draw_cost(cells, out / "cost.png")
+    return "\n".join(words)
+
+
+@styled
+def draw_cost(cells, path):
+    """Core-hours, steps and time per step of every cell over its size; one row of panels for each drive."""
+    drives = list(dict.fromkeys(cells["drive"]))
+    kinds = type_style(cells["type"])
+    materials = list(dict.fromkeys(cells["material"]))
+    title = "Cost of every cell; filled: run in full, open: projected"
+    figure = new_figure(TWO_COLUMNS, 0.5 + 2.2 * len(drives), title)
+    panels = figure.subplots(len(drives), 3, squeeze=False, sharex=True)
+    columns = (
+        ("core_hours_cell", "core-hours of all seeds"),
+        ("steps", "steps of one grain"),
+        ("us_per_step", "time per step [µs]"),
+    )
+    for line, drive in zip(panels, drives, strict=True):
+        for axes, (name, label) in zip(line, columns, strict=True):
+            for (kind, material), part in cells[cells["drive"] == drive].groupby(["type", "material"], sort=False):
+                part = part.sort_values("size_nm")
+                colour = kinds[kind]["color"]
+                marker = MATERIAL_MARKERS[materials.index(material) % len(MATERIAL_MARKERS)]
+                axes.plot(part["size_nm"], part[name], "-", color=colour, lw=0.6, alpha=0.6)
+                full = part["run_in_full"] == "yes"
+                axes.plot(part["size_nm"][full], part[name][full], marker, color=colour, ls="none")
+                axes.plot(part["size_nm"][~full], part[name][~full], marker, color=colour, mfc="white", ls="none")
+            axes.set_yscale("log")
+            logarithmic(axes.yaxis)
+            axes.set_ylabel(label)
+        line[0].annotate(drive, (0.05, 0.95), xycoords="axes fraction", va="top")
+    for axes in panels[-1]:
+        axes.set_xlabel(r"effective radius $a_\mathrm{eff}$ [nm]")
+    handles = []
+    for kind, style in kinds.items():
+        handles += panels[0, 0].plot([], [], "-", color=style["color"], label=kind, lw=2)
+    for k, material in enumerate(materials):
+        marker = MATERIAL_MARKERS[k % len(MATERIAL_MARKERS)]
+        handles += panels[0, 0].plot([], [], marker, color=GREY, label=material)
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    save(figure, path)
+
+
+def _scaling(out):
+    data = _read(out, "scaling")
+    if data is None:
+        return ""
+    medians = data.groupby("monomers").median(numeric_only=True).reset_index()
+    rows = []
+    for n, case in data.groupby("monomers"):
+        last = case.iloc[-1]
+        rows.append(
+            [
+                n, last["contacts"], _spread(case["us_per_step"], 2), f"{case['ns_per_contact_step'].median():.1f}",
+                f"{last['state_bytes'] / n:.0f}", f"{last['peak_bytes'] / 1e6:.0f}",
+                f"{(last['peak_bytes'] - last['idle_bytes']) / 1e6:.0f}",
+            ]
+        )  # fmt: skip
+    large = medians[medians["monomers"] >= LINEAR_FROM]
+    fit = ""
+    if len(large) > 1:
+        power = exponent(large["monomers"], large["us_per_step"])
+        power_memory = exponent(large["monomers"], large["state_bytes"])
+        fit = (
+            f"From {large['monomers'].min()} to {large['monomers'].max()} monomers the time per step grows as "
+            f"N^{power:.2f}, the state in memory as N^{power_memory:.2f}.\n"
+        )
+    draw_scaling(data, out / "scaling.png")
+    head = ["monomers", "contacts", "us per step", "ns per contact and step", "state [byte per monomer]"]
+    head += ["peak memory [MB]", "of that, not Python and its packages [MB]"]
+    return "\n".join(
+        ["## Growth with the number of monomers (BAM2, slowly turning)\n", _where(data), fit, table(head, rows)]
+        + ["![scaling](scaling.png)\n"]
+    )
+
+
+@styled
+def draw_scaling(data, path):
+    """Time per step and memory over the number of monomers, with lines of slope 1."""
+    figure = new_figure(TWO_COLUMNS, 2.6, "Cost over the number of monomers: BAM2, one core")
+    left, right = figure.subplots(1, 2)
+    left.plot(data["monomers"], data["us_per_step"], "o", color=BLUE, mfc="none", label="measured")
+    state = data.groupby("monomers").last().reset_index()
+    right.plot(state["monomers"], state["peak_bytes"] / 1e6, "s", color=ORANGE, mfc="none", label="peak of the process")
+    right.plot(state["monomers"], state["state_bytes"] / 1e6, "o", color=BLUE, mfc="none", label="state of the engine")
+    middle = data.groupby("monomers").median(numeric_only=True)
+    x = np.array([data["monomers"].min(), data["monomers"].max()], dtype=float)
+    last = x[-1]
+    for axes, y in ((left, middle["us_per_step"].loc[last]), (right, middle["state_bytes"].loc[last] / 1e6)):
+        axes.plot(x, y * x / last, "--", color=GREY, lw=0.8, label="linear")
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("number of monomers")
+        logarithmic(axes.xaxis)
+        logarithmic(axes.yaxis)
+    left.legend(loc="upper left")
+    right.legend(loc="center left")
+    left.set_ylabel("time per step [µs]")
+    right.set_ylabel("memory [MB]")
+    save(figure, path)

@@ -1,0 +1,152 @@
+"""Convergence: marks of disruption against spin-up rate, time step, treatment of damping, and two constants.
+
+Every grain is spun up once with each setting, one setting at a time being changed. A grain compared with itself has no
+scatter from its form; what is left is the shift that is looked for and the chaos of the breaks.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ratd.growth import grow
+from ratd.marks import disruption
+from ratd.materials import get_material
+from ratd.spinup import spin_up
+from ratd.validation.tables import table_kind
+
+MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
+COLUMNS = {
+    "study": ("", "what is varied: epsilon, timestep_factor, xi_c or T_vis"),
+    "material": ("", "material"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "damping": ("", "treatment of the damping"),
+    "outcome": ("", "how the run ended"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "epsilon": ("1", "(d omega/dt)/omega^2"),
+    "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
+    "xi_c": ("m", "critical rolling displacement"),
+    "viscous_time": ("s", "viscous time T_vis"),
+    "n_contacts": ("1", "contacts at the start"),
+    "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
+    "steps": ("1", "number of time steps"),
+    **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+}
+KIND = table_kind("convergence", "Convergence of the marks of disruption", COLUMNS)
+UNSTABLE_STEPS = 5
+"""A run is given up after so many times the steps that it should take: something has come loose and flies."""
+
+
+def cases(settings):
+    """The runs of one grain.
+
+    Parameters
+    ----------
+    settings : dict
+        ``production`` {epsilon, timestep_factor}, ``epsilon`` (list), ``step_epsilon`` (the epsilon at which steps and
+        constants are compared), ``timestep_factor`` {implicit: list, explicit: list}, ``xi_c_nm`` and
+        ``viscous_time_ps`` (lists).
+
+    Returns
+    -------
+    list of dict
+        study, epsilon, timestep_factor, damping, xi_c [m or None for the material's own], viscous_time [s or None].
+    """
+    f = settings["production"]["timestep_factor"]
+    plain = dict(epsilon=settings["step_epsilon"], timestep_factor=f, damping="implicit", xi_c=None, viscous_time=None)
+    found = [plain | dict(study="epsilon", epsilon=epsilon) for epsilon in settings["epsilon"]]
+    for damping, factors in settings["timestep_factor"].items():
+        found += [plain | dict(study="timestep_factor", timestep_factor=f, damping=damping) for f in factors]
+    found += [plain | dict(study="xi_c", xi_c=value * 1e-9) for value in settings["xi_c_nm"]]
+    found += [plain | dict(study="T_vis", viscous_time=value * 1e-12) for value in settings["viscous_time_ps"]]
+    return found
+
+
+def compute(settings, progress=None):
+    """Spin one grain up with every setting.
+
+    Parameters
+    ----------
+    settings : dict
+        As for `cases`, and material, type, a_eff [m], seed.
+    progress : callable, optional
+        Called with a sentence after each run.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`. A run that fails has NaN marks and says so in ``outcome``.
+    """
+    material = get_material(settings["material"])
+    grain = grow(settings["type"], settings["a_eff"], material, settings["seed"])
+    work = None  # steps times epsilon times f, the same for all runs that are stable
+    rows = []
+    for case in sorted(cases(settings), key=lambda case: -case["epsilon"] * case["timestep_factor"]):
+        rate = case["epsilon"] * case["timestep_factor"]
+        max_steps = None if work is None else int(UNSTABLE_STEPS * work / rate)
+        row = spin_one(grain, case, max_steps)
+        if row["outcome"] == "one contact left" and case["damping"] == "implicit" and work is None:
+            work = row["steps"] * rate
+        rows.append(row)
+        if progress is not None:
+            progress(f"{case['study']} {case['epsilon']:g} {case['timestep_factor']:g}: {row['outcome']}")
+    return rows
+
+
+def spin_one(grain, case, max_steps=None):
+    """One run of one grain as a row of `COLUMNS`.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    case : dict
+        From `cases`.
+    max_steps : int, optional
+        Where to give up.
+
+    Returns
+    -------
+    dict
+    """
+    own = grain.material
+    xi_c = own.critical_rolling_displacement if case["xi_c"] is None else case["xi_c"]
+    viscous_time = own.viscous_time if case["viscous_time"] is None else case["viscous_time"]
+    changed = type(grain)(
+        grain.position,
+        grain.radius,
+        replace(own, critical_rolling_displacement=xi_c, viscous_time=viscous_time),
+        type=grain.type,
+        a_eff=grain.a_eff,
+        seed=grain.seed,
+    )
+    row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
+    row |= dict(
+        study=case["study"],
+        material=own.name,
+        type=grain.type,
+        damping=case["damping"],
+        a_eff=grain.effective_radius,
+        seed=grain.seed,
+        epsilon=case["epsilon"],
+        timestep_factor=case["timestep_factor"],
+        xi_c=xi_c,
+        viscous_time=viscous_time,
+        n_contacts=grain.n_contacts,
+    )
+    try:
+        run = spin_up(
+            changed,
+            epsilon=case["epsilon"],
+            timestep_factor=case["timestep_factor"],
+            damping=case["damping"],
+            max_steps=max_steps,
+        )
+    except RuntimeError as error:
+        return row | {"outcome": "failed: " + str(error).split(":")[0]}
+    marks = disruption(run)
+    return row | {
+        "outcome": run.attrs["end_reason"],
+        "cut_bound": run.attrs["cut_bound"],
+        "steps": run.attrs["steps"],
+        **{name: float(marks[name]) for name in MARKS},
+    }

@@ -1,0 +1,97 @@
+"""Which independent pieces each check is computed in: one job a piece."""
+
+from itertools import product
+
+from ratd.config import read_yaml
+from ratd.errors import InputError
+from ratd.units import NM
+
+EXTENTS = ("full", "quick")
+
+
+class Plan:
+    """What `config/validation.yaml` asks for.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Attributes
+    ----------
+    config : dict
+        As read.
+    pieces : dict
+        extent -> check -> name of a piece -> its settings, in SI units.
+
+    Raises
+    ------
+    InputError
+        If a key is missing or a check unknown.
+    """
+
+    def __init__(self, path):
+        self.config = read_yaml(path)
+        try:
+            self.results, self.docs = self.config["results"], self.config["docs"]
+            self.pieces = {
+                extent: {check: self._pieces(check, own) for check, own in self.config[extent].items()}
+                for extent in EXTENTS
+            }
+        except KeyError as error:
+            raise InputError(f"{path}: the key {error} is missing or not known; see config/validation.yaml") from None
+
+    def _pieces(self, check, own):
+        return {
+            "convergence": self._convergence,
+            "pull_off": self._pull_off,
+            "literal": self._literal,
+            "theory": self._theory,
+            "growth": self._growth,
+            "energy": self._energy,
+        }[check](own)
+
+    def _convergence(self, own):
+        shared = {"production": self.config["production"]} | {
+            key: own[key] for key in ("epsilon", "step_epsilon", "timestep_factor", "xi_c_nm", "viscous_time_ps")
+        }
+        return {
+            f"{material}_{kind}_{size}nm_{seed}": shared
+            | {"material": material, "type": kind, "a_eff": size * NM, "seed": seed}
+            for material, kind, size, seed in product(
+                own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
+            )
+        }
+
+    def _pull_off(self, own):
+        shared = {key: own[key] for key in ("pairs", "ratios", "epsilon", "seed")}
+        return {material: shared | {"material": material} for material in own["materials"]}
+
+    def _literal(self, own):
+        shared = {key: own[key] for key in ("material", "angular_acceleration", "timestep_factor")}
+        return {
+            f"{grain['type']}_{grain['size_nm']}nm_{seed}": shared
+            | {"type": grain["type"], "a_eff": grain["size_nm"] * NM, "seed": seed}
+            for grain, seed in product(own["grains"], range(own["seeds"]))
+        }
+
+    def _theory(self, own):
+        shared = {"material": own["material"], "seeds": own["seeds"], **self.config["production"]}
+        return {
+            f"{kind}_{size}nm": shared | {"type": kind, "a_eff": size * NM}
+            for kind, size in product(own["types"], own["sizes_nm"])
+        }
+
+    def _growth(self, own):
+        return {
+            f"{kind}_{number}": {
+                "material": own["material"], "type": kind, "monomers": number, "seeds": own["seeds"]
+            }
+            for kind, number in product(("BA", "BAM1", "BAM2"), own["monomers"])
+        }  # fmt: skip
+
+    def _energy(self, own):
+        shared = {"material": own["material"], "a_eff": own["size_nm"] * NM, **self.config["production"]}
+        return {
+            f"{kind}_{seed}": shared | {"type": kind, "seed": seed}
+            for kind, seed in product(own["types"], range(own["seeds"]))
+        }

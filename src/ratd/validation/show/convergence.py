@@ -1,0 +1,194 @@
+"""Show how the marks of disruption converge with the rate of the spin-up and the time step."""
+
+import numpy as np
+
+from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.validation.convergence import MARKS
+from ratd.validation.show.text import markdown_table, measured
+from ratd.validation.statistics import median_of
+
+GOAL = 0.03
+"""Shift of a mark that is allowed."""
+EARLY = 0.5
+"""A run that loses mass below this part of the omega of the finest run was torn apart by its integration."""
+MARK_TEXT = {
+    "omega_disr": r"$\omega_\mathrm{disr}$ (stress peak)",
+    "omega_first_loss": "first loss",
+    "omega_mass_75": "25 % of mass lost",
+    "omega_contacts_75": "25 % of contacts lost",
+}
+SHOWN = MARKS[:3]
+STUDIES = {
+    "epsilon": r"$\epsilon = \dot\omega/\omega^2$",
+    "timestep_factor": r"step factor $f$",
+}
+
+
+def ratios(table, study, finest=None):
+    """Marks of every run over those of the finest run of the same grain.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.convergence.COLUMNS`.
+    study : str
+        epsilon, timestep_factor, xi_c or T_vis.
+    finest : float, optional
+        Value that the others are compared with; default: the least one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of the study, with a column ``grain``, a column ``x`` (what was varied), ratios in the columns of the
+        marks, and ``broken``: the integration failed, never ended, or lost mass below `EARLY` times the finest run's
+        first loss. Broken runs have NaN for ratios.
+    """
+    column = {"T_vis": "viscous_time"}.get(study, study)
+    rows = table[table["study"] == study].copy()
+    rows["x"] = rows[column]
+    rows["grain"] = [
+        f"{m} {t} {a * 1e9:.0f} {s:.0f}" for m, t, a, s in rows[["material", "type", "a_eff", "seed"]].values
+    ]
+    finest = rows["x"].min() if finest is None else finest
+    base = rows[np.isclose(rows["x"], finest, rtol=1e-6, atol=0.0) & (rows["damping"] == "implicit")].set_index("grain")
+    ratio = {mark: rows[mark].to_numpy() / base[mark].reindex(rows["grain"]).to_numpy() for mark in MARKS}
+    rows["broken"] = (rows["outcome"] != "one contact left") | (ratio["omega_first_loss"] < EARLY)
+    for mark in MARKS:
+        rows[mark] = np.where(rows["broken"], np.nan, ratio[mark])
+    return rows
+
+
+def summary(rows, mark):
+    """Median ratio against what was varied, list of dict: x, broken (runs that failed), and what `median_of` gives."""
+    result = []
+    for x, group in rows.groupby("x"):
+        statistic = median_of(group[mark], group["grain"])
+        result.append({"x": x, "broken": int(group["broken"].sum()), **statistic})
+    return result
+
+
+def coarsest(statistics, goal=GOAL):
+    """Greatest x up to which every median differs from 1 by no more than `goal`, NaN if there is none."""
+    best = np.nan
+    for entry in statistics:
+        if not (abs(entry["median"] - 1.0) <= goal and entry["broken"] == 0):
+            break
+        best = entry["x"]
+    return best
+
+
+@styled
+def draw(table):
+    """Ratios of three marks to the finest run, against epsilon (above) and f (below).
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.convergence.COLUMNS`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, "convergence of the marks of disruption (drive: prescribed)")
+    panels = figure.subplots(2, len(SHOWN), sharey="row", sharex="row")
+    kinds = list(dict.fromkeys(table["type"]))
+    for line, (study, label) in enumerate(STUDIES.items()):
+        rows = ratios(table, study)
+        for axes, mark in zip(panels[line], SHOWN, strict=True):
+            axes.axhspan(1 - GOAL, 1 + GOAL, color="0.88", lw=0)
+            for k, kind in enumerate(kinds):
+                for damping, face in (("implicit", None), ("explicit", "white")):
+                    part = rows[(rows["type"] == kind) & (rows["damping"] == damping)]
+                    if not len(part):
+                        continue
+                    points = [entry for entry in summary(part, mark) if entry["n"]]
+                    x = np.array([p["x"] for p in points]) * 1.05 ** (k - 1)
+                    y = np.array([p["median"] for p in points])
+                    error = np.nan_to_num([p["error"] for p in points])
+                    look = dict(color=TYPE_COLOUR.get(kind, "black"), marker=TYPE_MARKER.get(kind, "o"), mfc=face)
+                    text = kind if damping == "implicit" else f"{kind}, explicit damping"
+                    axes.errorbar(
+                        x, y, error, lw=0.8, ls="-" if face is None else ":", elinewidth=0.7, label=text, **look
+                    )
+            axes.set_xscale("log")
+            axes.set_xlabel(label)
+            if line == 0:
+                axes.set_title(MARK_TEXT[mark])
+            logarithmic(axes.xaxis)
+        panels[line][0].set_ylabel("over the finest run\nof the same grain")
+    panels[0][0].set_ylim(0.8, 2.3)
+    panels[1][0].set_ylim(0.92, 1.08)
+    handles, labels = panels[1][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _table(statistics, name, scale=1.0):
+    """Rows of a Markdown table: what was varied, then each mark as median with error (spread)."""
+    first = statistics[MARKS[0]]
+    rows = []
+    for k, entry in enumerate(first):
+        cells = []
+        for mark in MARKS:
+            s = statistics[mark][k]
+            cells.append(f"{measured(s['median'], s['error'])} ({s['low']:.2f}–{s['high']:.2f})" if s["n"] else "–")
+        rows.append([f"{entry['x'] * scale:g}", *cells, entry["broken"]])
+    return markdown_table([name, *MARKS, "runs that broke down"], rows)
+
+
+def tell(table):
+    """The section of the report.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.convergence.COLUMNS`.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    n = len(table[["material", "type", "a_eff", "seed"]].drop_duplicates())
+    sizes = ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
+    words = [
+        "## Convergence",
+        f"{n} grains ({', '.join(dict.fromkeys(table['material']))}; {', '.join(dict.fromkeys(table['type']))}; "
+        f"{sizes} nm) are spun up with every setting. Each mark is divided by that of the finest run of the same "
+        "grain. Given are the median over all grains with its standard error (bootstrap over grains) and, in brackets, "
+        "the range of 68 % of the grains. The marks of single grains differ by more than their median does, because "
+        "the order of the breaks is chaotic. A run broke down if its values became infinite, if it never ended, or if "
+        f"it lost mass below {EARLY:g} times the omega of the finest run; it has no part in the medians.",
+        "Spin-up rate, against the slowest:",
+    ]
+    rows = ratios(table, "epsilon")
+    statistics = {mark: summary(rows, mark) for mark in MARKS}
+    words.append(_table(statistics, "epsilon"))
+    words.append(_recommend(statistics, "epsilon"))
+    per_type = []
+    for kind, part in rows.groupby("type"):
+        for entry in summary(part, "omega_disr"):
+            per_type.append([kind, f"{entry['x']:g}", measured(entry["median"], entry["error"])])
+    words.append("omega_disr by type: " + "; ".join(f"{k} at {x}: {m}" for k, x, m in per_type) + ".")
+    rows = ratios(table, "timestep_factor")
+    for damping, part in rows.groupby("damping", sort=False):
+        words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
+        statistics = {mark: summary(part, mark) for mark in MARKS}
+        words.append(_table(statistics, "f"))
+        words.append(_recommend(statistics, "f"))
+    for study, name, scale, finest in (("xi_c", "xi_c [nm]", 1e9, 0.2e-9), ("T_vis", "T_vis [ps]", 1e12, 5e-12)):
+        rows = ratios(table, study, finest)
+        failed = int(rows["broken"].sum())
+        f = rows["timestep_factor"].iloc[0]
+        words.append(
+            f"{name} at f = {f:g}: {failed} of {len(rows)} runs broke down. Marks over those at {finest * scale:g}:"
+        )
+        words.append(_table({mark: summary(rows, mark) for mark in MARKS}, name, scale))
+    return "\n\n".join(words)
+
+
+def _recommend(statistics, name):
+    """A sentence: up to where each mark stays within the goal."""
+    parts = [f"{mark} {coarsest(entries):g}" for mark, entries in statistics.items()]
+    return f"Medians stay within {100 * GOAL:g} % up to {name} = " + ", ".join(parts) + "."

@@ -1,0 +1,36 @@
+"""The report: introduction, sections of the checks, what is checked elsewhere."""
+
+INTRODUCTION = """# Validation
+
+Checks of the model against exact answers, theory and its own convergence. Everything below, numbers and figures, was
+written by
+
+    {command}
+
+Nothing in it is typed by hand. Tables of all cases, from which the figures are drawn, lie in `{results}/{extent}` as
+netCDF. "±" is a standard error; where only a range is given, it is the range over all cases.
+"""
+ELSEWHERE = """## Checked elsewhere
+
+- Forces and torques as derivatives of their potentials, conservation of momentum, and the same trajectory in the
+  inertial and the turning frame are tests: `tests/test_laws.py`, `tests/test_engine.py`.
+- The comparison with LAMMPS is not part of this target yet.
+"""
+
+
+def report(sections, *, extent, results, command):
+    """The text of the whole report, Markdown.
+
+    Parameters
+    ----------
+    sections : list of str
+        What `tell` of the checks returned, with their figures.
+    extent, results, command : str
+        Which extent it is, where its results lie, and what makes it.
+
+    Returns
+    -------
+    str
+    """
+    head = INTRODUCTION.format(extent=extent, results=results, command=command)
+    return "\n".join([head, *sections, ELSEWHERE])

@@ -1,0 +1,66 @@
+"""Theory: the angular velocity of disruption against two estimates that need no simulation."""
+
+import math
+
+from ratd.bound import cut_bound, midplane_bound
+from ratd.growth import grow
+from ratd.marks import disruption
+from ratd.spinup import spin_up
+from ratd.validation.tables import table_kind
+
+MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
+COLUMNS = {
+    "material": ("", "material"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "epsilon": ("1", "(d omega/dt)/omega^2"),
+    "n_monomers": ("1", "monomers"),
+    "n_contacts": ("1", "contacts"),
+    "porosity": ("1", "porosity"),
+    "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
+    "midplane": ("rad s-1", "omega at which the mean tension at the mid-plane is the strength of Tatsuuma 2019"),
+    **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+}
+KIND = table_kind("theory", "Disruption against bound and tensile strength", COLUMNS)
+
+
+def compute(settings, progress=None):
+    """Spin up all grains of one type and size.
+
+    Parameters
+    ----------
+    settings : dict
+        material, type, a_eff [m], seeds (number), epsilon, timestep_factor.
+    progress : callable, optional
+        Called with a sentence after each grain.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`.
+    """
+    rows = []
+    for seed in range(settings["seeds"]):
+        grain = grow(settings["type"], settings["a_eff"], settings["material"], seed)
+        run = spin_up(grain, epsilon=settings["epsilon"], timestep_factor=settings["timestep_factor"])
+        marks = disruption(run)
+        solid = not math.isfinite(grain.shape.porosity) or grain.shape.porosity <= 0.0
+        rows.append(
+            dict(
+                material=grain.material.name,
+                type=grain.type,
+                a_eff=grain.effective_radius,
+                seed=seed,
+                epsilon=settings["epsilon"],
+                n_monomers=grain.n_monomers,
+                n_contacts=grain.n_contacts,
+                porosity=grain.shape.porosity,
+                cut_bound=cut_bound(grain),
+                midplane=math.nan if solid else midplane_bound(grain),
+                **{name: float(marks[name]) for name in MARKS},
+            )
+        )
+        if progress is not None:
+            progress(f"seed {seed}: done")
+    return rows

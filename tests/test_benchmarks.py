@@ -1,0 +1,191 @@
+"""The benchmarks run and write what they say. Nothing here looks at how long anything took."""
+
+import csv
+import math
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ratd.errors import FileError
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def benchmarks(monkeypatch):
+    """The folder of the repository on the path, as `python -m benchmarks` has it."""
+    monkeypatch.syspath_prepend(ROOT)
+
+
+def command(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "benchmarks", *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """What the quick run of everything writes, without LAMMPS."""
+    out = tmp_path_factory.mktemp("benchmarks")
+    done = command("--quick", "--no-lammps", "--out", out)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+def test_kernel_has_every_case_and_its_numbers_agree(results):
+    table = rows(results / "kernel.csv")
+    cases = [(row["aggregate"], row["motion"], row["code"], row["pair"]) for row in table]
+    assert cases == [
+        (kind, motion, "ratd", pair)
+        for kind in ("BAM2", "BA")
+        for motion in ("at rest", "slowly turning")
+        for pair in ("0", "1")
+    ]
+    for row in table:
+        per_step = float(row["seconds"]) / int(row["steps"])
+        assert math.isclose(float(row["us_per_step"]), per_step * 1e6, rel_tol=1e-4)
+        assert math.isclose(float(row["ns_per_contact_step"]), per_step / int(row["contacts"]) * 1e9, rel_tol=1e-4)
+        assert row["contacts"] == row["contacts_before"]
+    assert {row["monomers"] for row in rows(results / "small.csv")} == {"10"}
+
+
+def test_cost_has_every_cell_in_both_paces_and_sums_up(results):
+    runs = rows(results / "cost_runs.csv")
+    cells = [(row["drive"], row["type"], row["coarse"]) for row in runs]
+    assert cells == [
+        (drive, kind, pace)
+        for drive in ("prescribed", "literal")
+        for pace in ("90", "30", "1")
+        for kind in ("BA", "BAM1", "BAM2")
+    ]
+    assert all(int(row["steps"]) > 0 and float(row["seconds"]) > 0.0 for row in runs)
+    cells = rows(results / "cost_cells.csv")
+    for total in rows(results / "cost_paper.csv"):
+        own = [float(row["core_hours_cell"]) for row in cells if row["drive"] == total["drive"]]
+        assert len(own) == 3 and total["grains"] == "6"
+        assert math.isclose(float(total["core_hours"]), sum(own), rel_tol=1e-4)
+
+
+def test_projection_multiplies_only_what_grows_with_the_steps(benchmarks, monkeypatch):
+    from benchmarks import cost
+
+    runs = {10: {"seconds": "3.0", "steps": "1000", "end": ""}, 30: {"seconds": "1.4", "steps": "330", "end": ""}}
+    monkeypatch.setattr(cost, "_find", lambda rows, plan, drive, cell, level: runs.get(level))
+    # seconds = 24/coarse + 0.6
+    assert cost.projected([], None, "prescribed", (), 10) == pytest.approx((24.6, 10000))
+    assert cost.projected([], None, "prescribed", (), 30) is None
+
+
+def test_scaling_has_every_number_and_memory_beyond_the_state(results):
+    table = rows(results / "scaling.csv")
+    assert sorted({int(row["monomers"]) for row in table}) == [10, 30, 100]
+    assert all(int(row["peak_bytes"]) > int(row["idle_bytes"]) > int(row["state_bytes"]) > 0 for row in table)
+
+
+def test_report_names_the_machine_and_has_all_figures(results, benchmarks):
+    from benchmarks import machine
+
+    text = (results / "README.md").read_text()
+    assert machine.processor() in text
+    assert "its numbers mean nothing" in text
+    for part in ("kernel", "cost", "scaling"):
+        assert f"({part}.png)" in text
+        assert (results / f"{part}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_second_call_makes_no_run_of_the_cost_again(results):
+    before = (results / "cost_runs.csv").read_bytes()
+    done = command("cost", "--quick", "--out", results)
+    assert done.returncode == 0 and "times as fast" not in done.stderr
+    assert (results / "cost_runs.csv").read_bytes() == before
+
+
+def test_time_that_is_up_is_told(tmp_path):
+    done = command("cost", "--quick", "--minutes", 0, "--out", tmp_path)
+    assert done.returncode == 3 and "the same command goes on" in done.stderr
+    assert not (tmp_path / "cost_runs.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["speed"], "part is 'speed'; allowed are kernel, cost, scaling"),
+        (["kernel"], "--quick needs --out"),
+        (["kernel", "--out", "OUT", "--aggregate", "missing.txt"], "missing.txt: cannot be read"),
+        (["kernel", "--out", "OUT", "--lammps", "no-such-program"], "no program that can be run"),
+    ],
+)
+def test_bad_input_ends_with_one_sentence(words, message, tmp_path):
+    done = command("--quick", *[str(tmp_path) if word == "OUT" else word for word in words])
+    assert done.returncode == 1
+    assert message in done.stderr and "Traceback" not in done.stderr
+
+
+def test_aggregate_of_a_file_is_that_in_the_file(benchmarks, tmp_path):
+    from benchmarks import grains
+
+    grain = grains.grown("BA", 12)
+    path = tmp_path / "aggregate.txt"
+    np.savetxt(path, np.column_stack([grain.position, grain.radius]), fmt="%.17g")
+    again = grains.read(path)
+    np.testing.assert_array_equal(again.position, grain.position)
+    np.testing.assert_array_equal(again.contacts, grain.contacts)
+    path.write_text("1 2 3\n")
+    with pytest.raises(FileError, match="3 columns; it must have four"):
+        grains.read(path)
+
+
+def test_data_file_of_lammps_has_every_sphere_in_nm_by_class_of_size(benchmarks, tmp_path):
+    from benchmarks import grains, peer
+
+    grain = grains.grown("BAM2", 20)
+    peer.write_data(tmp_path / "data", grain, 4)
+    head, atoms = (tmp_path / "data").read_text().split("Atoms\n\n")
+    assert "20 atoms" in head and "4 atom types" in head
+    table = np.array([line.split() for line in atoms.splitlines()], dtype=float)
+    np.testing.assert_allclose(table[:, 2], 2e9 * grain.radius)
+    np.testing.assert_allclose(table[:, 4:], 1e9 * grain.position)
+    assert np.bincount(table[:, 1].astype(int)).tolist() == [0, 5, 5, 5, 5]
+    largest = [grain.radius[table[:, 1] == kind].max() for kind in (1, 2, 3, 4)]
+    assert largest == sorted(largest)
+
+
+LOG = """LAMMPS (1 Jan 2000)
+Step c_contacts
+       0           40
+      10           40
+Loop time of 9.0 on 1 procs for 10 steps with 20 atoms
+99.0% CPU use with 1 MPI tasks x 1 OpenMP threads
+Step c_contacts
+      10           40
+     110           38
+Loop time of 2.0 on 1 procs for 100 steps with 20 atoms
+50.0% CPU use with 1 MPI tasks x 1 OpenMP threads
+"""
+
+
+def test_log_of_lammps_gives_processor_time_of_the_last_run(benchmarks):
+    from benchmarks import peer
+
+    assert peer.read_log(LOG) == peer.Timing("1 Jan 2000", 1.0, 19, 20, 0)
+    with pytest.raises(peer.PeerError, match="did not finish"):
+        peer.read_log(LOG.split("99.0%")[0])
+
+
+@pytest.mark.skipif(shutil.which("lmp") is None, reason="LAMMPS is not there")
+def test_lammps_holds_the_contacts_of_the_aggregate(benchmarks):
+    from benchmarks import grains, peer
+
+    grain = grains.grown("BAM2", 30)
+    timing = peer.run(peer.find(), grain, omega=1e6, timestep=1e-13, steps=50, warm=5, classes=2)
+    assert timing.contacts == grain.n_contacts
+    assert timing.seconds > 0.0 and timing.classes == 2

@@ -1,0 +1,206 @@
+"""The fast part of the checks of `snakemake validation`, and that what they say follows from their tables."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import ratd
+from ratd import schema
+from ratd.materials import MATERIALS
+from ratd.validation import convergence, energy, growth, literal, pull_off, theory
+from ratd.validation.plan import EXTENTS, Plan
+from ratd.validation.show import convergence as show_convergence
+from ratd.validation.show import energy as show_energy
+from ratd.validation.show import growth as show_growth
+from ratd.validation.show import literal as show_literal
+from ratd.validation.show import pull_off as show_pull_off
+from ratd.validation.show import theory as show_theory
+from ratd.validation.show.report import report
+from ratd.validation.show.text import markdown_table, measured
+from ratd.validation.statistics import median_of
+from ratd.validation.tables import read_tables, write_table
+
+CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
+SMALL = {"material": "q-S", "type": "BAM2", "a_eff": 60e-9, "seed": 0}
+
+
+def works(show, rows):
+    """Draw and tell a table; the section in words."""
+    table = pd.DataFrame(rows)
+    assert show.draw(table).axes
+    text = show.tell(table)
+    assert text.startswith("## ") and "| --- |" in text
+    return text
+
+
+@pytest.mark.parametrize(("a_1", "a_2"), [(10e-9, 10e-9), (80e-9, 80e-9), (10e-9, 100e-9), (30e-9, 100e-9)])
+@pytest.mark.parametrize("material", ["a-C", "q-S", "co-S"])
+def test_a_pair_parts_where_the_force_is_that_of_pull_off(a_1, a_2, material):
+    material = MATERIALS[material]
+    omega = pull_off.parting_omega(a_1, a_2, material, epsilon=0.0005, timestep_factor=0.05)
+    assert omega == pytest.approx(pull_off.force_controlled_omega(a_1, a_2, material), rel=0.01)
+
+
+def test_an_undamped_pair_from_first_touch_parts_between_both_solutions():
+    material = MATERIALS["q-S"]
+    omega = pull_off.parting_omega(40e-9, 40e-9, material, epsilon=0.01, timestep_factor=0.02, damped=False)
+    assert pull_off.eq35_omega(40e-9, 40e-9, material) * 0.97 < omega
+    assert omega < pull_off.force_controlled_omega(40e-9, 40e-9, material) * 0.97
+
+
+def test_solutions_for_equal_monomers_are_those_of_the_paper():
+    material, a = MATERIALS["co-S"], 50e-9
+    mass = 4 / 3 * np.pi * a**3 * material.density
+    gamma = material.surface_energy
+    assert pull_off.force_controlled_omega(a, a, material) == pytest.approx(np.sqrt(3 * np.pi * gamma / (2 * mass)))
+    assert pull_off.eq35_omega(a, a, material) == pytest.approx(np.sqrt(5 * np.pi * gamma / (6 * mass)))
+
+
+def test_pull_off_is_drawn_and_told(tmp_path):
+    rows = pull_off.compute({"material": "q-S", "pairs": 2, "ratios": [1, 5], "epsilon": 0.05, "seed": 0})
+    assert len(rows) == 2 * (2 + 4)
+    text = works(show_pull_off, rows)
+    assert "undamped" in text
+    write_table(tmp_path / "a.nc", rows, pull_off.KIND, {})
+    back = read_tables([tmp_path / "a.nc", tmp_path / "a.nc"], pull_off.KIND)
+    pd.testing.assert_frame_equal(back, pd.DataFrame(rows + rows)[list(pull_off.COLUMNS)], check_dtype=False)
+
+
+def test_a_table_with_other_columns_is_refused(tmp_path):
+    with pytest.raises(ratd.InputError, match="columns"):
+        write_table(tmp_path / "a.nc", [{"omega": 1.0}], pull_off.KIND, {})
+    with pytest.raises(ratd.InputError, match="at least one case"):
+        write_table(tmp_path / "a.nc", [], pull_off.KIND, {})
+
+
+@pytest.fixture(scope="module")
+def convergence_rows():
+    return convergence.compute(
+        SMALL
+        | {
+            "production": {"epsilon": 0.1, "timestep_factor": 0.05},
+            "epsilon": [0.5, 0.1],
+            "step_epsilon": 0.2,
+            "timestep_factor": {"implicit": [0.02, 0.1], "explicit": [0.02, 0.6]},
+            "xi_c_nm": [0.2, 6.4],
+            "viscous_time_ps": [1, 5, 9],
+        }
+    )
+
+
+def test_convergence_of_one_grain(convergence_rows):
+    table = pd.DataFrame(convergence_rows)
+    text = works(show_convergence, convergence_rows)
+    assert "Medians stay within 3 %" in text
+    step = show_convergence.ratios(table, "timestep_factor")
+    implicit = step[step["damping"] == "implicit"]
+    np.testing.assert_allclose(implicit["omega_first_loss"], 1.0, atol=0.05)
+    assert step[(step["damping"] == "explicit") & (step["x"] == 0.6)]["broken"].all()
+    assert not show_convergence.ratios(table, "xi_c", 0.2e-9)["broken"].any()
+    times = show_convergence.ratios(table, "T_vis", 5e-12).set_index("x")["omega_first_loss"]
+    assert times.loc[1e-12] < 1.0 < times.loc[9e-12]
+
+
+def test_ratios_are_to_the_finest_run_of_the_same_grain():
+    rows = []
+    for seed, scale in ((0, 1e7), (1, 3e7)):
+        for epsilon, shift in ((0.01, 1.0), (0.1, 1.02), (1.0, 1.5)):
+            row = {name: "" if not units else np.nan for name, (units, _) in convergence.COLUMNS.items()}
+            row |= dict(study="epsilon", material="q-S", type="BA", damping="implicit", outcome="one contact left")
+            row |= dict(a_eff=1e-7, seed=seed, epsilon=epsilon, timestep_factor=0.05)
+            rows.append(row | {name: scale * shift for name in convergence.MARKS})
+    table = show_convergence.ratios(pd.DataFrame(rows), "epsilon")
+    statistics = show_convergence.summary(table, "omega_disr")
+    np.testing.assert_allclose([entry["median"] for entry in statistics], [1.0, 1.02, 1.5])
+    assert show_convergence.coarsest(statistics) == 0.1
+    assert show_convergence.coarsest(statistics, goal=0.6) == 1.0
+    assert np.isnan(show_convergence.coarsest(statistics[2:]))
+
+
+def test_theory(tmp_path):
+    rows = theory.compute(SMALL | {"seeds": 2, "epsilon": 0.2, "timestep_factor": 0.05})
+    assert all(0.3 < row["omega_first_loss"] / row["cut_bound"] < 3.0 for row in rows)
+    assert "2 grains" in works(show_theory, rows)
+    write_table(tmp_path / "a.nc", rows, theory.KIND, {})
+
+
+def test_growth():
+    rows = growth.compute({"material": "q-S", "type": "BAM2", "monomers": 32, "seeds": 8})
+    assert np.mean([row["porosity"] for row in rows]) == pytest.approx(0.46, abs=0.04)
+    assert all(row["n_contacts"] >= 3 * 32 - 6 for row in rows)
+    assert all(row["square_x"] + row["square_y"] + row["square_z"] == pytest.approx(1.0) for row in rows)
+    assert "0.46 ± 0.01" in works(show_growth, rows)
+
+
+def test_energy_put_in_is_stored_or_dissipated():
+    rows = energy.compute(SMALL | {"type": "BA", "epsilon": 0.05, "timestep_factor": 0.05})
+    table = pd.DataFrame(rows)
+    gap = show_energy.gap(table)
+    assert abs(gap.iloc[-1]) < 0.01 * table["work"].iloc[-1]
+    works(show_energy, rows)
+
+
+def test_the_spins_share_of_a_pair():
+    """Two equal spheres that touch: 2 x 2/5 m a^2 over that and 2 m a^2."""
+    a = 20e-9
+    pair = ratd.Grain([[-a, 0, 0], [a, 0, 0]], [a, a], "q-S")
+    assert literal.spin_share(pair) == pytest.approx(0.8 / 2.8, rel=1e-9)
+
+
+def test_literal_drive():
+    rows = literal.compute(
+        {"material": "q-S", "type": "BA", "a_eff": 50e-9, "seed": 0}
+        | {"angular_acceleration": [1e16, 1e17], "timestep_factor": [0.05, 0.1]}
+    )
+    assert [row["drive"] for row in rows] == ["prescribed"] + ["literal"] * 6
+    explicit = [row for row in rows if row["coriolis"] == "explicit" and row["drive"] == "literal"]
+    assert min(row["omega_mass_75"] for row in explicit) > 1.5 * rows[0]["omega_mass_75"]
+    works(show_literal, rows)
+
+
+def test_exponents_are_found_in_what_follows_the_law():
+    a, dt = (grid.ravel() for grid in np.meshgrid([1e15, 1e16, 1e17], [1e-13, 2e-13, 4e-13]))
+    rows = pd.DataFrame({"grain": "x", "angular_acceleration": a, "timestep": dt, "omega": 0.4 * (a / dt) ** (1 / 3)})
+    (found,) = show_literal.exponents(rows, "omega")
+    np.testing.assert_allclose(found, [1 / 3, -1 / 3], rtol=1e-9)
+
+
+def test_median_and_its_error():
+    rng = np.random.Generator(np.random.PCG64(1))
+    values = rng.normal(1.0, 0.1, 400)
+    found = median_of(values)
+    assert found["median"] == np.median(values) and found["n"] == 400
+    assert found["error"] == pytest.approx(1.2533 * 0.1 / 20, rel=0.3)
+    assert found["low"] == pytest.approx(0.9, abs=0.03) and found["high"] == pytest.approx(1.1, abs=0.03)
+    assert np.isnan(median_of([np.nan])["median"]) and np.isnan(median_of([1.0])["error"])
+    together = median_of(np.repeat(values[:20], 20), np.repeat(np.arange(20), 20))
+    assert together["error"] > 3 * found["error"]
+
+
+def test_numbers_in_words():
+    assert measured(1.01349, 0.0241) == "1.013 ± 0.024"
+    assert measured(123.4, 20.0) == "123 ± 20"
+    assert measured(0.5, np.nan) == "0.5" and measured(np.nan, 1.0) == "–"
+    assert markdown_table(["a", "b"], [[1, 2]]).splitlines() == ["| a | b |", "| --- | --- |", "| 1 | 2 |"]
+    text = report(["## A\n"], extent="quick", results="results/validation", command="make it")
+    assert "make it" in text and "## A" in text and "results/validation/quick" in text
+
+
+def test_plan_names_every_piece_once():
+    plan = Plan(CONFIG)
+    for extent in EXTENTS:
+        assert set(plan.pieces[extent]) == {"convergence", "pull_off", "literal", "theory", "growth", "energy"}
+        for check, pieces in plan.pieces[extent].items():
+            assert pieces and f"validation_{check}" in schema.KINDS
+    full = plan.pieces["full"]["convergence"]
+    assert full["q-S_BAM2_150nm_3"]["a_eff"] == pytest.approx(150e-9) and full["q-S_BAM2_150nm_3"]["seed"] == 3
+    assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
+
+
+def test_plan_names_what_is_missing(tmp_path):
+    path = tmp_path / "validation.yaml"
+    path.write_text("results: x\ndocs: quick\nfull: {colour: {}}\nquick: {}\nproduction: {}\n")
+    with pytest.raises(ratd.InputError, match="colour"):
+        Plan(path)
