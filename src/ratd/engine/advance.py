@@ -23,6 +23,12 @@ velocity that is no finite number."""
 
 STRESS_EVERY = 64
 """Steps between two samples of the total stress."""
+CENTRE_EVERY = 4096
+"""Steps after which the origin is put back to the centre of mass.
+
+The outer torque acts about the origin. Off the centre of mass by x it leaves a net force m alpha x, which makes x grow
+by exp(1/sqrt(epsilon)) until omega_1, from a rounding error to a size that tears slow runs apart.
+"""
 FAR, NEAR = 0.2, 0.02
 """Reach of the two lists of pairs that may come into contact, in mean monomer radii.
 
@@ -168,6 +174,8 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         if counter[CONTACTS] + near.shape[0] > state.pair_i.shape[0]:
             return FULL
 
+        if counter[STEPS] % CENTRE_EVERY == 0:
+            find_fragments(state)
         dt = scalar[DT]
         ended = contact_forces(
             state.monomer, state.force, state.contact, state.pair_i, state.pair_j, scratch,
