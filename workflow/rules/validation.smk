@@ -33,18 +33,12 @@ for check in CHECKS.pieces["full"]:
             "../scripts/validation_{wildcards.check}.py"
 
 
-def validation_tables(wildcards):
-    """Files of all pieces of one check."""
-    pieces = CHECKS.pieces[wildcards.extent][wildcards.check]
-    return [
-        f"{CHECKS.results}/{wildcards.extent}/{wildcards.check}/{piece}.nc"
-        for piece in pieces
-    ]
-
-
 rule validation_show:
     input:
-        validation_tables,
+        lambda w: [
+            f"{CHECKS.results}/{w.extent}/{w.check}/{piece}.nc"
+            for piece in CHECKS.pieces[w.extent][w.check]
+        ],
     output:
         pdf=f"{CHECKS.results}/{{extent}}/{{check}}.pdf",
         png=f"{CHECKS.results}/{{extent}}/{{check}}.png",
