@@ -12,7 +12,7 @@ from ratd.engine.contacts import contact_energies, update_contact_rates
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.fragments import find_fragments
 from ratd.engine.measure import dissipated, total_stress
-from ratd.engine.state import contact_field, monomer_rows, new_state
+from ratd.engine.state import contact_blocks, contact_field, monomer_rows, new_state
 from ratd.grain import Grain
 from ratd.growth import grow
 from ratd.materials import MATERIALS
@@ -45,8 +45,7 @@ def shaken(grain, speed, spin, seed=0, **options):
 
 def with_field(state, field, value):
     """Set one field of all contacts."""
-    lane = int(field) // layout.LANES
-    state.contact.reshape(-1, layout.BLOCK // layout.LANES, layout.LANES)[:, lane, :] = value
+    contact_blocks(state)[:, int(field) // layout.LANES, :] = value
 
 
 def forces(state, dt_drift, dt):
@@ -83,7 +82,7 @@ def test_forces_are_those_of_the_slow_reference(kind, displacement):
     state = shaken(grain, 1.0, 1e8)
     rng = np.random.default_rng(5)
     k = state.counter[layout.CONTACTS]
-    fields = state.contact.reshape(-1, layout.BLOCK // layout.LANES, layout.LANES)
+    fields = contact_blocks(state)
     for first in (layout.NIX, layout.NJX):
         lane = int(first) // layout.LANES
         pointer = fields[:, lane : lane + 3, :]
@@ -124,7 +123,7 @@ def test_forces_and_torques_are_derivatives_of_the_potentials(radii):
         with_field(state, layout.NIX, 2e-3)
         with_field(state, layout.NJY, -3e-3)
         with_field(state, layout.PHI, 5e-3)
-        fields = state.contact.reshape(-1, layout.BLOCK // layout.LANES, layout.LANES)
+        fields = contact_blocks(state)
         for first in (layout.NIX, layout.NJX):
             lane = int(first) // layout.LANES
             fields[0, lane : lane + 3, 0] /= np.linalg.norm(fields[0, lane : lane + 3, 0])

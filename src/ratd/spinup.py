@@ -13,7 +13,7 @@ from ratd.bound import cut_bound
 from ratd.drives import AT_REST, OMEGA_RAT, SPIN_UP_LAWS, make_drive
 from ratd.engine.advance import FEW_CONTACTS, FULL, NOT_FINITE, STEPS_DONE, advance, residual_force
 from ratd.engine.contacts import update_contact_rates
-from ratd.engine.fragments import find_fragments
+from ratd.engine.fragments import find_fragments, note_lost
 from ratd.engine.layout import (
     DT, DT_DRIFT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FRAGMENTS_LOST, LANES, LARGEST_CONTACTS,
     LARGEST_MONOMERS, MASS, MONOMERS, OMEGA, PULL_OFF, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, X,
@@ -26,7 +26,16 @@ from ratd.engine.measure import (
     stored_energy,
     total_stress,
 )
-from ratd.engine.state import State, come_to_rest, contact_field, monomer_rows, new_state, place, with_room
+from ratd.engine.state import (
+    State,
+    come_to_rest,
+    contact_blocks,
+    contact_field,
+    monomer_rows,
+    new_state,
+    place,
+    with_room,
+)
 from ratd.errors import InputError
 from ratd.grain import Grain
 from ratd.shape import principal_axes
@@ -119,10 +128,8 @@ def relax(grain, *, timestep_factor=0.05):
     place(state, mass @ position / mass.sum(), axes[[1, 2, 0]])
     state.scalar[:] = 0.0
     state.counter[STEPS] = 0
-    fields = state.contact.reshape(-1, LANES)
-    per_block = len(fields) // (len(state.pair_i) // LANES)
     for field in (E_SLIDE, E_ROLL, E_TWIST, E_DAMP):
-        fields[int(field) // LANES :: per_block] = 0.0
+        contact_blocks(state)[:, int(field) // LANES, :] = 0.0
     update_contact_rates(state, timestep_factor, True)
     return state
 
@@ -290,9 +297,7 @@ def _let_go(state):
     fragment = state.fragment[: len(rows)]
     for label in range(1, fragment.max() + 1):
         members = fragment == label
-        entry = state.counter[FRAGMENTS_LOST]
-        state.lost[entry] = rows[members, MASS].sum(), members.sum(), state.scalar[OMEGA], state.scalar[TIME]
-        state.counter[FRAGMENTS_LOST] += 1
+        note_lost(state, rows[members, MASS].sum(), members.sum())
 
 
 def _edge(number, omega_1, records):

@@ -152,6 +152,7 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
     travel = 0.0
     fragments = find_fragments(state)
     changed = False
+    omega, domega = angular_velocity(drive, scalar[TIME])
     while True:
         if changed:
             # Some contact was made or broken.
@@ -184,7 +185,6 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         if counter[STEPS] % STRESS_EVERY == 0:
             scalar[STRESS_SUM] += total_stress(state)
             scalar[STRESS_SAMPLES] += 1.0
-        omega, domega = angular_velocity(drive, scalar[TIME])
         momentum, inertia, fastest = kick_and_drift(
             state.monomer, state.force, counter[MONOMERS], dt, omega, domega, scalar[UNWIND], drive
         )
@@ -194,7 +194,8 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
             scalar[UNWIND] = -momentum / inertia
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
-        scalar[OMEGA] = angular_velocity(drive, scalar[TIME])[0]
+        omega, domega = angular_velocity(drive, scalar[TIME])
+        scalar[OMEGA] = omega
         counter[STEPS] += 1
         if not fastest < np.inf:
             return NOT_FINITE

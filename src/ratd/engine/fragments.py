@@ -83,6 +83,17 @@ def find_fragments(state):
 
 
 @jit
+def note_lost(state, mass, members):
+    """Note a fragment of a mass [kg] and a number of monomers as lost, here and now."""
+    entry = state.counter[FRAGMENTS_LOST]
+    state.lost[entry, 0] = mass
+    state.lost[entry, 1] = members
+    state.lost[entry, 2] = state.scalar[OMEGA]
+    state.lost[entry, 3] = state.scalar[TIME]
+    state.counter[FRAGMENTS_LOST] = entry + 1
+
+
+@jit
 def drop_departed(state, fragments):
     """Drop the fragments that have left for good, noting their mass and number of monomers.
 
@@ -129,12 +140,7 @@ def drop_departed(state, fragments):
         if nearest[f] > outer and receding:
             gone[f] = True
             dropped += 1
-            entry = state.counter[FRAGMENTS_LOST]
-            state.lost[entry, 0] = mass[f]
-            state.lost[entry, 1] = members[f]
-            state.lost[entry, 2] = state.scalar[OMEGA]
-            state.lost[entry, 3] = state.scalar[TIME]
-            state.counter[FRAGMENTS_LOST] = entry + 1
+            note_lost(state, mass[f], members[f])
     if dropped == 0:
         return 0
 

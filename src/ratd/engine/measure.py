@@ -7,12 +7,14 @@ import numpy as np
 from ratd._accelerate import jit
 from ratd.engine.contacts import contact_energies, contact_start
 from ratd.engine.layout import (
+    FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, TORQUE_X, TORQUE_Y, TORQUE_Z,
     CONTACTS, DRIVEN, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, INERTIA, INV_AREA, LARGEST_MONOMERS, LOST_CONTACT, LOST_DAMP,
     LOST_ROLL, LOST_SLIDE, LOST_TWIST, MASS, MONOMERS, NORMAL, OMEGA, RADIUS, ROW, S, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.shape import shape_of
 
 _ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
 
 
 @jit
@@ -122,9 +124,9 @@ def greatest_residual(state):
     """Greatest net force [N] on any monomer and greatest net torque over its radius [N], as left in `state.force`."""
     greatest = 0.0
     for k in range(state.counter[MONOMERS]):
-        q = 8 * k
+        q = np.uint64(k) * _FORCE_ROW
         a = state.monomer[np.uint64(k) * _ROW + RADIUS]
-        f = state.force[q] ** 2 + state.force[q + 1] ** 2 + state.force[q + 2] ** 2
-        t = (state.force[q + 4] ** 2 + state.force[q + 5] ** 2 + state.force[q + 6] ** 2) / (a * a)
-        greatest = max(greatest, max(f, t))
+        f = state.force[q + FORCE_X] ** 2 + state.force[q + FORCE_Y] ** 2 + state.force[q + FORCE_Z] ** 2
+        t = state.force[q + TORQUE_X] ** 2 + state.force[q + TORQUE_Y] ** 2 + state.force[q + TORQUE_Z] ** 2
+        greatest = max(greatest, max(f, t / (a * a)))
     return math.sqrt(greatest)

@@ -134,10 +134,14 @@ def monomer_rows(state):
     return state.monomer.reshape(-1, ROW)[: state.counter[MONOMERS]]
 
 
+def contact_blocks(state):
+    """All fields of all contacts, idle ones too, (blocks, fields, LANES), a view; field f stands at f // LANES."""
+    return state.contact.reshape(-1, BLOCK // LANES, LANES)
+
+
 def contact_field(state, field):
     """One field of all contacts, (k,), a copy."""
-    lane = int(field) // LANES
-    return state.contact.reshape(-1, BLOCK // LANES, LANES)[:, lane, :].reshape(-1)[: state.counter[CONTACTS]]
+    return contact_blocks(state)[:, int(field) // LANES, :].reshape(-1)[: state.counter[CONTACTS]]
 
 
 def come_to_rest(state):
@@ -161,7 +165,7 @@ def place(state, origin, axes):
     rows[:, X : X + 3] -= origin
     for first in (X, VX, WX):
         rows[:, first : first + 3] = rows[:, first : first + 3] @ axes.T
-    fields = state.contact.reshape(-1, BLOCK // LANES, LANES)
+    fields = contact_blocks(state)
     for first in (NIX, NJX, NCX):
         lane = int(first) // LANES
         fields[:, lane : lane + 3, :] = np.einsum("ab,kbl->kal", axes, fields[:, lane : lane + 3, :])
