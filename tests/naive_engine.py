@@ -12,17 +12,10 @@ END = (1.0 / 6.0) ** (1.0 / 3.0)
 
 
 def turned(vector, spin, dt):
-    """A vector turned by the angle 2 atan(|spin| dt/2) about `spin` (Rodrigues)."""
-    speed = np.linalg.norm(spin)
-    if speed == 0.0:
-        return vector
-    axis = spin / speed
-    angle = 2.0 * math.atan(0.5 * speed * dt)
-    return (
-        vector * math.cos(angle)
-        + np.cross(axis, vector) * math.sin(angle)
-        + axis * (axis @ vector) * (1.0 - math.cos(angle))
-    )
+    """A vector turned by |spin| dt about `spin`, to second order, and made a unit vector."""
+    half = 0.5 * dt * spin
+    vector = vector + 2.0 * np.cross(half, vector) + 2.0 * np.cross(half, np.cross(half, vector))
+    return vector / np.linalg.norm(vector)
 
 
 def contact(material, a, x, v, w, n_i, n_j, n_c_old, phi, dt, damping_rate=0.0):
@@ -74,7 +67,6 @@ def contact(material, a, x, v, w, n_i, n_j, n_c_old, phi, dt, damping_rate=0.0):
         lost_roll = 0.5 * 4 * f_c / r * (xi @ xi - xi_c**2)
         excess = xi * (1 - xi_c / np.linalg.norm(xi))
         n_i, n_j = n_i - excess / a_i, n_j - excess / a_j
-    n_i, n_j = n_i / np.linalg.norm(n_i), n_j / np.linalg.norm(n_j)
     if abs(phi) > phi_c:
         kept = math.copysign(phi_c, phi)
         lost_twist = 0.5 * k_t * (phi**2 - kept**2)

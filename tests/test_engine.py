@@ -99,10 +99,8 @@ def test_forces_are_those_of_the_slow_reference(kind, displacement):
         lane = int(layout.S) // layout.LANES
         fields[:, lane, :] = trial.contact.reshape(fields.shape)[:, lane, :]
     found_force, found_torque = forces(state, dt, dt)
-    # first-order renormalisation of the pointers is exact to the second order of the slip
-    tolerance = 1e-12 if displacement < 1e-3 else 2e-3
-    np.testing.assert_allclose(found_force, force, atol=tolerance * np.abs(force).max(), rtol=0)
-    np.testing.assert_allclose(found_torque, torque, atol=tolerance * np.abs(torque).max(), rtol=0)
+    np.testing.assert_allclose(found_force, force, atol=1e-12 * np.abs(force).max(), rtol=0)
+    np.testing.assert_allclose(found_torque, torque, atol=1e-12 * np.abs(torque).max(), rtol=0)
     np.testing.assert_allclose(contact_field(state, layout.PHI), [d["phi"] for d in details], rtol=1e-12, atol=1e-18)
     for column, field in enumerate((layout.E_SLIDE, layout.E_ROLL, layout.E_TWIST, layout.E_DAMP)):
         lost = np.array([d["lost"][column] for d in details])

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from ratd._fastmath import reciprocal, reciprocal_root, rough_reciprocal
+from ratd._fastmath import reciprocal, reciprocal_root, rough_reciprocal, rough_reciprocal_root
 
 VALUES = np.concatenate([10.0 ** np.random.default_rng(0).uniform(-36, 36, 20000), np.linspace(0.5, 4.0, 20000)])
 
 
-def test_reciprocal_root():
-    found = np.array([reciprocal_root(x) for x in VALUES])
-    np.testing.assert_allclose(found * np.sqrt(VALUES), 1.0, rtol=0, atol=5e-16)
-    assert reciprocal_root(1.0) == 1.0
+@pytest.mark.parametrize(("function", "error"), [(reciprocal_root, 5e-16), (rough_reciprocal_root, 2e-14)])
+def test_reciprocal_roots(function, error):
+    found = np.array([function(x) for x in VALUES])
+    np.testing.assert_allclose(found * np.sqrt(VALUES), 1.0, rtol=0, atol=error)
+    assert function(1.0) == 1.0
 
 
 @pytest.mark.parametrize(("function", "error"), [(rough_reciprocal, 1.3e-7), (reciprocal, 2e-14)])

@@ -128,13 +128,20 @@ def test_limits_and_stiffnesses():
     assert pytest.approx(0.0198943678865) == tangential.TWISTING_LIMIT
 
 
+def test_turning_a_pointer_changes_its_length_in_the_fourth_order():
+    spin = np.array([3e8, -2e8, 5e8])
+    for dt in (1e-10, 3e-11):
+        n = np.array(tangential.rotate_pointer(0.36, 0.48, 0.8, *(0.5 * dt * spin)))
+        assert 0.0 < np.linalg.norm(n) - 1.0 <= (np.linalg.norm(spin) * dt) ** 4 / 8
+
+
 def test_pointers_turn_by_the_right_angle_and_keep_their_length():
     n = np.array([0.36, 0.48, 0.8])
     spin = np.array([3e8, -2e8, 5e8])
     dt = 1e-12
     steps = 1000
     for _ in range(steps):
-        n = np.array(tangential.rotate_pointer(*n, *(0.5 * dt * spin)))
+        n = np.array(tangential.nearly_unit(*tangential.rotate_pointer(*n, *(0.5 * dt * spin))))
     assert np.linalg.norm(n) == pytest.approx(1.0, abs=1e-13)
     axis = spin / np.linalg.norm(spin)
     angle = np.linalg.norm(spin) * dt * steps

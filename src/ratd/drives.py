@@ -235,7 +235,7 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
         angular_momentum += mass * (x * vy - y * vx) + own * wz
         inertia += mass * (x * x + y * y) + own
         speed = vx * vx + vy * vy + vz * vz
-        fastest = fastest if fastest > speed else speed  # a NaN stays
+        fastest = max(fastest, speed)
 
         monomer[r + VX] = vx
         monomer[r + VY] = vy
@@ -246,10 +246,6 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
         monomer[r + X] = x + dt * vx
         monomer[r + Y] = y + dt * vy
         monomer[r + Z] += dt * vz
-        force[q + FORCE_X] = 0.0
-        force[q + FORCE_Y] = 0.0
-        force[q + FORCE_Z] = 0.0
-        force[q + TORQUE_X] = 0.0
-        force[q + TORQUE_Y] = 0.0
-        force[q + TORQUE_Z] = 0.0
+        for number in range(FORCE_ROW):  # the whole row, which is one store
+            force[q + np.uint64(number)] = 0.0
     return angular_momentum, inertia, math.sqrt(fastest)

@@ -197,7 +197,7 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         omega, domega = angular_velocity(drive, scalar[TIME])
         scalar[OMEGA] = omega
         counter[STEPS] += 1
-        if not fastest < np.inf:
+        if not (fastest < np.inf and abs(momentum) < np.inf):
             return NOT_FINITE
 
         if ended > 0:

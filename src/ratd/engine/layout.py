@@ -1,7 +1,7 @@
 """Where each number of the engine stands.
 
 Contacts are kept in blocks of `LANES`: within a block each field is contiguous, so that the arithmetic runs on whole
-vector registers, and a block (14 KiB) stays in the first-level cache while it is gathered, computed and summed.
+vector registers, and a block (13 KiB) stays in the first-level cache while it is gathered, computed and summed.
 Field f of contact k is `contact[block_start(k) + f + k % LANES]`.
 
 Monomers are rows of `ROW` numbers, so that gathering one touches two cache lines. The offsets are unsigned: for a
@@ -10,8 +10,10 @@ signed index numba emits a test for a negative one, which keeps the loop from be
 
 import numpy as np
 
-LANES = 64
-VECTOR = 8
+from ratd._rows import EIGHT
+
+LANES = 56
+VECTOR = EIGHT
 """Contacts are padded to a multiple of this with contacts that do nothing."""
 
 # --- contacts: fields kept from step to step -------------------------------------------------------------------------

@@ -10,7 +10,7 @@ Vectors are passed as three numbers each, so that the compiler can treat many co
 import math
 
 from ratd._accelerate import jit
-from ratd._fastmath import reciprocal_root
+from ratd._fastmath import rough_reciprocal_root
 
 TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
 """phi_c [rad], critical twisting angle (Sect. 6 of the paper)."""
@@ -45,20 +45,18 @@ def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
 
 @jit(forceinline=True)
 def rotate_pointer(nx, ny, nz, tx, ty, tz):
-    """Turn a vector by the rotation whose half-angle vector is t = w dt/2 (Cayley's form).
+    """Turn a vector by the rotation whose half-angle vector is t = w dt/2: n + 2 t x n + 2 t x (t x n).
 
-    The turning angle is 2 atan|t|, i.e. |w| dt up to a relative error of (w dt)^2/12; the length is kept up to a
-    relative error of |t|^6.
+    The turning angle is |w| dt up to a relative error of (w dt)^2/6, and the length grows by a part of at most
+    (w dt)^4/8: `nearly_unit` takes that back.
     """
-    square = tx * tx + ty * ty + tz * tz
-    f = 2.0 - 2.0 * square * (1.0 - square)  # 2/(1 + t^2)
     ux = ty * nz - tz * ny
     uy = tz * nx - tx * nz
     uz = tx * ny - ty * nx
     return (
-        nx + f * (ux + ty * uz - tz * uy),
-        ny + f * (uy + tz * ux - tx * uz),
-        nz + f * (uz + tx * uy - ty * ux),
+        nx + 2.0 * (ux + (ty * uz - tz * uy)),
+        ny + 2.0 * (uy + (tz * ux - tx * uz)),
+        nz + 2.0 * (uz + (tx * uy - ty * ux)),
     )
 
 
@@ -91,7 +89,7 @@ def excess_fraction(square):
     square : float
         Square of the displacement over its limit.
     """
-    return 1.0 - reciprocal_root(max(1.0, square))
+    return 1.0 - rough_reciprocal_root(max(1.0, square))
 
 
 @jit(forceinline=True)

@@ -1,0 +1,61 @@
+"""Rows turned into columns and back, against numpy."""
+
+import numpy as np
+import pytest
+from numba.core.errors import TypingError
+
+from ratd._accelerate import jit
+from ratd._rows import EIGHT, add_columns, gather_differences, gather_sides
+
+STRIDE = 11
+NUMBERS = [0, 1, 2, 4, 5, 6]
+
+
+@jit
+def gathered(rows, first, second, begin, columns, at, stride):
+    gather_differences(rows, first, second, begin, columns, at, stride)
+    gather_sides(rows, first, second, begin, columns, at + np.uint64(6) * stride, stride)
+
+
+@jit
+def added(rows, index, begin, columns, at, at_last, stride, sign):
+    add_columns(rows, index, begin, columns, at, at_last, stride, sign)
+
+
+def test_rows_are_gathered_as_columns():
+    rng = np.random.default_rng(0)
+    rows = rng.normal(size=(30, 16))
+    first, second = rng.integers(0, 30, size=(2, 20)).astype(np.uint64)
+    columns = np.full(3 + 12 * STRIDE, np.nan)
+    gathered(rows.ravel(), first, second, np.uint64(5), columns, np.uint64(3), np.uint64(STRIDE))
+    i, j = first[5 : 5 + EIGHT], second[5 : 5 + EIGHT]
+    wanted = np.concatenate([(rows[i] - rows[j])[:, NUMBERS], rows[i][:, 8:11], rows[j][:, 8:11]], axis=1)
+    table = columns[3:].reshape(12, STRIDE)
+    np.testing.assert_array_equal(table[:, :EIGHT], wanted.T)
+    assert np.isnan(table[:, EIGHT:]).all()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_columns_are_added_to_rows_in_their_order_also_twice(sign):
+    rng = np.random.default_rng(1)
+    rows = rng.normal(size=(9, 8))
+    index = np.array([4, 4, 0, 7, 4, 2, 2, 8, 1, 1], dtype=np.uint64)
+    columns = rng.normal(size=8 * STRIDE)
+    table = columns.reshape(8, STRIDE)
+    wanted = rows.copy()
+    for lane in range(EIGHT):
+        wanted[index[1 + lane], :3] += sign * table[1:4, lane]
+        wanted[index[1 + lane], 4:7] += table[5:8, lane]
+    flat = rows.ravel().copy()
+    added(
+        flat, index, np.uint64(1), columns, np.uint64(STRIDE), np.uint64(5 * STRIDE), np.uint64(STRIDE), sign
+    )  # fmt: skip
+    np.testing.assert_array_equal(flat.reshape(9, 8), wanted)
+
+
+def test_what_is_not_flat_is_refused():
+    with pytest.raises(TypingError, match="flat contiguous arrays"):
+        added(
+            np.zeros((2, 8)), np.zeros(8, dtype=np.uint64), np.uint64(0), np.zeros(48), np.uint64(0), np.uint64(24),
+            np.uint64(8), 1.0,
+        )  # fmt: skip
