@@ -149,7 +149,7 @@ def _plan(paths, quick):
                 "materials": ["q-S"],
                 "sizes_nm": [50],
                 "seeds": {"first": 0, "number": 2},
-                "spin_up": {"epsilon": 0.5, "records": 30},
+                "spin_up": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
                 "literal": {"angular_acceleration": 1e17},
                 "snapshots": {"grains": []},
                 "figures": {"figure4": None, "figure6": None},

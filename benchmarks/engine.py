@@ -12,12 +12,10 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, OMEGA, STEPS, TIME
 from ratd.engine.state import State, new_state, with_room
-from ratd.spinup import relax
+from ratd.spinup import TIMESTEP_FACTOR, relax
 
 EPSILON = 1e-9
 """So small that omega stays as it is however long the measurement: ten monomers make a microsecond in a second."""
-TIMESTEP_FACTOR = 0.05
-"""Default of the pipeline."""
 
 
 class Turning(NamedTuple):
@@ -52,7 +50,7 @@ class Turning(NamedTuple):
 
 
 def turning(grain, part, *, relaxed=True):
-    """Let the frame of a grain turn, with the drive `prescribed` and the constant-epsilon law.
+    """Let the frame of a grain turn, with the drive `prescribed`, at a rate that changes nothing.
 
     Parameters
     ----------
@@ -75,9 +73,10 @@ def turning(grain, part, *, relaxed=True):
     state.scalar[DT_DRIFT] = state.scalar[DT]
     find_fragments(state)
     omega_1 = cut_bound(grain)
-    drive = make_drive("prescribed", omega_1=omega_1, epsilon=EPSILON)
-    # the law is linear below omega_1: start in the middle of it
-    state.scalar[TIME] = part / (EPSILON * omega_1)
+    # the exponential law is linear for so small a rate: start in the middle of it
+    acceleration = EPSILON * omega_1**2
+    drive = make_drive("prescribed", omega_1=omega_1, angular_acceleration=acceleration)
+    state.scalar[TIME] = part * omega_1 / acceleration
     state.scalar[OMEGA] = part * omega_1
     return Turning(state, drive, part * omega_1)
 

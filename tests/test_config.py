@@ -58,7 +58,7 @@ def test_quick_is_three_of_each():
         ({"spin_up": {"epsilon": "1e-2"}}, "spin_up.epsilon is '1e-2'", "a number above 0"),
         ({"spin_up": {"epsilon": 0}}, "spin_up.epsilon is 0", "above 0"),
         ({"spin_up": None}, "spin_up is None", "a mapping"),
-        ({"spin_up": {"angular_acceleration": 1e14}}, "spin_up give {'epsilon': 0.02, 'angular", "null for the other"),
+        ({"spin_up": {"angular_acceleration": 1e14}}, "spin_up give {'epsilon': 0.01, 'angular", "null for the other"),
         ({"drives": ["literal"], "literal": {"angular_acceleration": None}}, "spin_up and literal together", "null"),
         ({"drives": ["torque"]}, "drives[0] is 'torque'", "prescribed"),
         ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
@@ -138,7 +138,7 @@ def test_settings_are_in_si_units():
 def test_drives_have_spin_up_laws_of_their_own():
     plan = with_changes({"drives": ["prescribed", "literal"]})
     prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
-    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (0.02, None)
+    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (0.01, None)
     assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1e15)
     assert prescribed["records"] == literal["records"]
 

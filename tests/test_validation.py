@@ -99,6 +99,10 @@ def test_convergence_of_one_grain(convergence_rows):
     np.testing.assert_allclose(implicit["omega_first_loss"], 1.0, atol=0.05)
     assert step[(step["damping"] == "explicit") & (step["x"] == 0.6)]["broken"].all()
     assert not show_convergence.ratios(table, "xi_c", 0.2e-9)["broken"].any()
+    laws = table[table["study"] == "law"].set_index("law")
+    assert laws.loc["exponential", "omega_first_loss"] == pytest.approx(
+        laws.loc["constant-epsilon", "omega_first_loss"], rel=0.1
+    )
     times = show_convergence.ratios(table, "T_vis", 5e-12).set_index("x")["omega_first_loss"]
     assert times.loc[1e-12] < 1.0 < times.loc[9e-12]
 

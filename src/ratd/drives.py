@@ -24,6 +24,9 @@ SPIN_UP_LAWS = ("constant-epsilon", "exponential")
 CONSTANT_EPSILON, EXPONENTIAL = range(len(SPIN_UP_LAWS))
 CORIOLIS = ("exact", "explicit")
 
+SOFT_START = 0.3
+"""Part of omega_1 up to which the constant-epsilon law is linear, so that it starts with a finite d omega/dt."""
+
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
 
@@ -38,7 +41,7 @@ class Drive(NamedTuple):
     epsilon : float
         (d omega/dt)/omega^2 of the constant-epsilon law.
     omega_1 : float
-        Below it the constant-epsilon law is linear [rad/s].
+        Below it the constant-epsilon law raises omega^2 evenly [rad/s].
     acceleration : float
         Initial d omega/dt of Eq. 24, i.e. omega_RAT/tau_drag [rad/s2].
     torque : bool
@@ -65,7 +68,7 @@ def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriol
     ----------
     name : {"prescribed", "literal"}
     omega_1 : float
-        Angular velocity [rad/s] up to which the constant-epsilon law is linear.
+        Angular velocity [rad/s] from which on the constant-epsilon law has constant epsilon.
     epsilon : float, optional
         For the constant-epsilon law.
     angular_acceleration : float, optional
@@ -124,18 +127,25 @@ def angular_velocity(drive, time):
 
     Notes
     -----
-    Exponential: Eqs. 24 and 26 with tau_drag = omega_RAT/acceleration. Constant epsilon:
-    d omega/dt = epsilon max(omega, omega_1)^2, i.e. linear up to omega_1 and 1/omega = 1/omega_1 - epsilon (t - t_1)
-    above (physics.md Sect. 5).
+    Exponential: Eqs. 24 and 26 with tau_drag = omega_RAT/acceleration.
+
+    Constant epsilon: d omega/dt = epsilon omega^2 above omega_1. Below, where nothing breaks, omega^2 and with it the
+    centrifugal stress rise evenly, d omega/dt = epsilon omega_1^3/omega, after a linear start up to `SOFT_START`
+    omega_1. That takes half as long as a linear rise to omega_1 with the same rate there.
     """
     if drive.law == EXPONENTIAL:
         rate = drive.acceleration / OMEGA_RAT
         return -OMEGA_RAT * math.expm1(-time * rate), drive.acceleration * math.exp(-time * rate)
-    start = 1.0 / (drive.epsilon * drive.omega_1)  # when omega_1 is reached
-    if time <= start:
-        slope = drive.epsilon * drive.omega_1**2
+    unit = 1.0 / (drive.epsilon * drive.omega_1)
+    linear = SOFT_START**2 * unit
+    even = linear + 0.5 * (1.0 - SOFT_START**2) * unit
+    if time <= linear:
+        slope = drive.omega_1 / (SOFT_START * unit)
         return slope * time, slope
-    omega = 1.0 / max(1.0 / drive.omega_1 - drive.epsilon * (time - start), 1.0 / (2.0 * OMEGA_RAT))
+    if time <= even:
+        omega = drive.omega_1 * math.sqrt(SOFT_START**2 + 2.0 * (time - linear) / unit)
+        return omega, drive.omega_1**2 / (unit * omega)
+    omega = 1.0 / max(1.0 / drive.omega_1 - drive.epsilon * (time - even), 1.0 / (2.0 * OMEGA_RAT))
     return omega, drive.epsilon * omega**2
 
 

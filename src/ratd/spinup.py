@@ -47,6 +47,13 @@ RESIDUAL = 1e-3
 """A grain is relaxed when no net force exceeds this part of the least pull-off force in it."""
 RELAXATION_STEPS = 50
 RELAXATION_ROUNDS = 20_000
+EPSILON = 0.01
+TIMESTEP_FACTOR = 0.1
+"""What a spin-up takes when it is not told otherwise: within 3 % of the limit of a slow spin-up and a short step
+(docs/validation.md)."""
+FIRST_LOSS = 0.7
+"""Part of the cut bound from which on epsilon is constant: the first monomers leave at 0.67 to 0.86 of the bound
+(medians of BAM1, BAM2 and BA; docs/validation.md)."""
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
 """Wall time [s] between two checkpoints, and two calls of `progress`."""
@@ -81,7 +88,7 @@ FRAGMENTS = {
 }
 
 
-def relax(grain, *, timestep_factor=0.05):
+def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
     """State of a grain that has come to rest: contacts of the growth carry the forces that their compression gives.
 
     Parameters
@@ -141,7 +148,7 @@ def spin_up(
     epsilon=None,
     angular_acceleration=None,
     coriolis=None,
-    timestep_factor=0.05,
+    timestep_factor=TIMESTEP_FACTOR,
     damping="implicit",
     max_steps=None,
     records=300,
@@ -157,8 +164,8 @@ def spin_up(
     drive : {"prescribed", "literal"}
         The consistent model with the outer torque, or the equations as printed (see `ratd.drives`).
     epsilon : float, optional
-        Spin up with constant (d omega/dt)/omega^2 above the cut bound omega_1, and linearly below it. 0.02 when
-        neither this nor `angular_acceleration` is given.
+        Spin up with this constant (d omega/dt)/omega^2 above `FIRST_LOSS` times the cut bound omega_1, and with an
+        even rise of omega^2 below it. `EPSILON` when neither this nor `angular_acceleration` is given.
     angular_acceleration : float, optional
         Spin up after Eq. 24 instead, with this initial d omega/dt [rad/s2].
     coriolis : {"exact", "explicit"}, optional
@@ -196,10 +203,14 @@ def spin_up(
     """
     _check(grain, timestep_factor, damping, max_steps, records, snapshot_every)
     if epsilon is None and angular_acceleration is None:
-        epsilon = 0.02
+        epsilon = EPSILON
     omega_1 = cut_bound(grain)
     motion = make_drive(
-        drive, omega_1=omega_1, epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis
+        drive,
+        omega_1=FIRST_LOSS * omega_1,
+        epsilon=epsilon,
+        angular_acceleration=angular_acceleration,
+        coriolis=coriolis,
     )
     implicit = damping == "implicit"
     key = _fingerprint(grain, motion, timestep_factor, implicit, records, snapshot_every)
@@ -245,7 +256,7 @@ def spin_up(
         "drive": drive,
         "spin_up_law": SPIN_UP_LAWS[motion.law],
         "epsilon": np.nan if epsilon is None else float(epsilon),
-        "angular_acceleration": motion.acceleration or motion.epsilon * omega_1**2,
+        "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2,
         "coriolis": "explicit" if motion.explicit_coriolis else "exact",
         "damping": damping,
         "timestep_factor": float(timestep_factor),

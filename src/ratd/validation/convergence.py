@@ -8,18 +8,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from ratd.bound import cut_bound
+from ratd.drives import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.growth import grow
 from ratd.marks import disruption
 from ratd.materials import get_material
-from ratd.spinup import spin_up
+from ratd.spinup import FIRST_LOSS, spin_up
 from ratd.validation.tables import table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 COLUMNS = {
-    "study": ("", "what is varied: epsilon, timestep_factor, xi_c or T_vis"),
+    "study": ("", "what is varied: epsilon, timestep_factor, law, xi_c or T_vis"),
     "material": ("", "material"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
     "damping": ("", "treatment of the damping"),
+    "law": ("", "spin-up law"),
     "outcome": ("", "how the run ended"),
     "a_eff": ("m", "effective radius"),
     "seed": ("1", "seed of the grain"),
@@ -50,13 +53,21 @@ def cases(settings):
     Returns
     -------
     list of dict
-        study, epsilon, timestep_factor, damping, xi_c [m or None for the material's own], viscous_time [s or None].
+        study, epsilon, timestep_factor, damping, law, xi_c [m or None for the material's own], viscous_time
+        [s or None].
     """
-    f = settings["production"]["timestep_factor"]
-    plain = dict(epsilon=settings["step_epsilon"], timestep_factor=f, damping="implicit", xi_c=None, viscous_time=None)
+    plain = dict(
+        epsilon=settings["step_epsilon"],
+        timestep_factor=settings["production"]["timestep_factor"],
+        damping="implicit",
+        law=SPIN_UP_LAWS[CONSTANT_EPSILON],
+        xi_c=None,
+        viscous_time=None,
+    )
     found = [plain | dict(study="epsilon", epsilon=epsilon) for epsilon in settings["epsilon"]]
     for damping, factors in settings["timestep_factor"].items():
         found += [plain | dict(study="timestep_factor", timestep_factor=f, damping=damping) for f in factors]
+    found += [plain | dict(study="law", law=law) for law in SPIN_UP_LAWS]
     found += [plain | dict(study="xi_c", xi_c=value * 1e-9) for value in settings["xi_c_nm"]]
     found += [plain | dict(study="T_vis", viscous_time=value * 1e-12) for value in settings["viscous_time_ps"]]
     return found
@@ -93,6 +104,13 @@ def compute(settings, progress=None):
     return rows
 
 
+def _pace(grain, case):
+    """How fast `spin_up` is to turn the grain; Eq. 24 has the epsilon of the case where the other law reaches it."""
+    if case["law"] == SPIN_UP_LAWS[CONSTANT_EPSILON]:
+        return {"epsilon": case["epsilon"]}
+    return {"angular_acceleration": case["epsilon"] * (FIRST_LOSS * cut_bound(grain)) ** 2}
+
+
 def spin_one(grain, case, max_steps=None):
     """One run of one grain as a row of `COLUMNS`.
 
@@ -125,6 +143,7 @@ def spin_one(grain, case, max_steps=None):
         material=own.name,
         type=grain.type,
         damping=case["damping"],
+        law=case["law"],
         a_eff=grain.effective_radius,
         seed=grain.seed,
         epsilon=case["epsilon"],
@@ -136,7 +155,7 @@ def spin_one(grain, case, max_steps=None):
     try:
         run = spin_up(
             changed,
-            epsilon=case["epsilon"],
+            **_pace(grain, case),
             timestep_factor=case["timestep_factor"],
             damping=case["damping"],
             max_steps=max_steps,

@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from ratd.drives import SPIN_UP_LAWS
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
-from ratd.validation.convergence import MARKS
+from ratd.spinup import FIRST_LOSS
+from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
 from ratd.validation.show.text import markdown_table, measured
 from ratd.validation.statistics import median_of
 
@@ -177,6 +179,7 @@ def tell(table):
         statistics = {mark: summary(part, mark) for mark in MARKS}
         words.append(_table(statistics, "f"))
         words.append(_recommend(statistics, "f"))
+    words.append(_laws(table))
     for study, name, scale, finest in (("xi_c", "xi_c [nm]", 1e9, 0.2e-9), ("T_vis", "T_vis [ps]", 1e12, 5e-12)):
         rows = ratios(table, study, finest)
         failed = int(rows["broken"].sum())
@@ -186,6 +189,25 @@ def tell(table):
         )
         words.append(_table({mark: summary(rows, mark) for mark in MARKS}, name, scale))
     return "\n\n".join(words)
+
+
+def _laws(table):
+    """A paragraph: marks under Eq. 24 over those under the constant-epsilon law."""
+    rows = table[table["study"] == "law"].set_index(["material", "type", "a_eff", "seed"])
+    constant, exponential = (rows[rows["law"] == law] for law in SPIN_UP_LAWS)
+    parts = []
+    for mark in MARKS:
+        ratio = (exponential[mark] / constant[mark]).dropna()
+        s = median_of(ratio.to_numpy(), [" ".join(map(str, grain)) for grain in ratio.index])
+        parts.append(f"{mark} {measured(s['median'], s['error'])} ({s['low']:.2f}–{s['high']:.2f}; {s['n']} grains)")
+    steps = (exponential["steps"] / constant["steps"]).median()
+    epsilon = constant["epsilon"].iloc[0]
+    return (
+        f"The law of Eq. 24, with epsilon = {epsilon:g} at {FIRST_LOSS:g} of the cut bound, where the first monomers "
+        "leave, against the law that keeps this epsilon from there on: " + ", ".join(parts) + ". "
+        f"The runs under Eq. 24 were ended after at most {UNSTABLE_STEPS} times the steps (median {steps:.1f} times); "
+        "to their end, at hundreds of times the bound, they would take hundreds of times as many."
+    )
 
 
 def _recommend(statistics, name):
