@@ -9,7 +9,7 @@ from ratd.drives import AT_REST, OMEGA_RAT, angular_velocity, make_drive
 from ratd.engine import layout
 from ratd.engine.advance import REACHED, STEPS_DONE, advance
 from ratd.engine.contacts import contact_energies, update_contact_rates
-from ratd.engine.forces import SCRATCH_SIZE, contact_forces
+from ratd.engine.forces import SCRATCH_SIZE, contact_forces, forces_between
 from ratd.engine.fragments import find_fragments
 from ratd.engine.measure import dissipated, total_stress
 from ratd.engine.state import contact_blocks, contact_field, monomer_rows, new_state
@@ -68,6 +68,26 @@ def momenta(state):
 
 def kinetic(rows):
     return 0.5 * (rows[:, 12] @ (rows[:, VELOCITY] ** 2).sum(1) + rows[:, 13] @ (rows[:, SPIN] ** 2).sum(1))
+
+
+@pytest.mark.parametrize("kind", ["BA", "BAM2"])
+def test_contacts_one_by_one_have_the_forces_of_whole_blocks(kind):
+    grain = grow(kind, 120e-9, MATERIAL, 1)
+    state = shaken(grain, 1.0, 1e8)
+    dt = state.scalar[layout.DT]
+    wanted, scratch = np.zeros((2, grain.n_monomers, 3)), np.zeros(SCRATCH_SIZE)
+    one = state._replace(contact=state.contact.copy())
+    for k, (i, j) in enumerate(zip(state.pair_i, state.pair_j, strict=True)):
+        if k < state.counter[layout.CONTACTS]:
+            forces_between(one.monomer, one.contact, one.pair_i, one.pair_j, scratch, k, 1, dt, dt)
+            push, turn_i, turn_j = scratch[int(layout.FX) :: layout.LANES].reshape(3, 3)
+            wanted[0, i] += push
+            wanted[0, j] -= push
+            wanted[1, i] += turn_i
+            wanted[1, j] += turn_j
+    for found, exact in zip(forces(state, dt, dt), wanted, strict=True):
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
+    np.testing.assert_allclose(state.contact, one.contact, rtol=1e-13, atol=1e-25)
 
 
 def potential(state):

@@ -4,6 +4,8 @@ In single precision a division or a root takes a quarter of its time; one step o
 which are multiplications, brings back what accuracy is needed.
 """
 
+import math
+
 import numpy as np
 
 from ratd._accelerate import jit
@@ -14,7 +16,7 @@ _ONE = np.float32(1.0)
 @jit(forceinline=True)
 def reciprocal_root(x):
     """1/sqrt(x) with a relative error below 3e-16, for x between 1e-37 and 1e37; exactly 1 for x = 1."""
-    y = np.float64(_ONE / np.sqrt(np.float32(x)))
+    y = np.float64(_ONE / math.sqrt(np.float32(x)))
     e = 1.0 - (x * y) * y
     return y + (y * e) * (0.5 + 0.375 * e)
 
@@ -22,7 +24,7 @@ def reciprocal_root(x):
 @jit(forceinline=True)
 def rough_reciprocal_root(x):
     """1/sqrt(x) with a relative error below 2e-14, for x between 1e-37 and 1e37; exactly 1 for x = 1."""
-    y = np.float64(_ONE / np.sqrt(np.float32(x)))
+    y = np.float64(_ONE / math.sqrt(np.float32(x)))
     return y + (0.5 * y) * (1.0 - (x * y) * y)
 
 

@@ -149,6 +149,121 @@ def angular_velocity(drive, time):
     return omega, drive.epsilon * omega**2
 
 
+class TurningStep(NamedTuple):
+    """What one step in the turning frame is for all monomers alike; made by `turning_step`.
+
+    Attributes
+    ----------
+    square : float
+        omega^2.
+    domega : float
+        d omega/dt [rad/s2] that the velocities feel.
+    alpha : float
+        d omega/dt [rad/s2] of the outer torque, 0 without it.
+    back : float
+        Rigid rotation [rad/s] that is taken out of the largest fragment.
+    two_omega_dt, cos_v, sin_v : float
+        Angle by which the Coriolis force turns a velocity, its cosine and sine.
+    cos_w, sin_w : float
+        The same of the turning of a spin.
+    spin_euler : float
+        What the Euler term takes from a spin [rad/s].
+    explicit_coriolis : bool
+        See `Drive`.
+    """
+
+    square: float
+    domega: float
+    alpha: float
+    back: float
+    two_omega_dt: float
+    cos_v: float
+    sin_v: float
+    cos_w: float
+    sin_w: float
+    spin_euler: float
+    explicit_coriolis: bool
+
+
+@jit(forceinline=True)
+def turning_step(dt, omega, domega, unwind, drive):
+    """`TurningStep` from the arguments of `kick_and_drift`."""
+    cos_w = 1.0
+    sin_w = 0.0
+    spin_euler = 0.0
+    if drive.spin_terms:
+        cos_w = math.cos(omega * dt)
+        sin_w = math.sin(omega * dt)
+        spin_euler = -domega * dt
+    alpha = 0.0
+    back = 0.0
+    if drive.torque:
+        alpha = domega
+        back = unwind
+    return TurningStep(
+        omega * omega, domega, alpha, back,
+        2.0 * omega * dt, math.cos(2.0 * omega * dt), math.sin(2.0 * omega * dt),
+        cos_w, sin_w, spin_euler, drive.explicit_coriolis,
+    )  # fmt: skip
+
+
+@jit(forceinline=True)
+def kick_and_drift_one(monomer, force, r, q, dt, turn):
+    """Move the monomer of row `r` by one step, and clear its force, row `q`; see `kick_and_drift`.
+
+    Returns
+    -------
+    angular_momentum, inertia : float
+        What it adds to those of the largest fragment.
+    square : float
+        Square of its speed in the frame [m2/s2].
+    """
+    h = 0.5 * dt
+    x = monomer[r + X]
+    y = monomer[r + Y]
+    driven = monomer[r + DRIVEN]
+    inv_mass = monomer[r + INV_MASS]
+    euler = turn.alpha * driven - turn.domega
+    ax = force[q + FORCE_X] * inv_mass + turn.square * x - euler * y
+    ay = force[q + FORCE_Y] * inv_mass + turn.square * y + euler * x
+    vx = monomer[r + VX]
+    vy = monomer[r + VY]
+    vz = monomer[r + VZ] + dt * force[q + FORCE_Z] * inv_mass
+    back = turn.back * driven
+    if turn.explicit_coriolis:
+        vx, vy = vx + dt * ax + turn.two_omega_dt * vy, vy + dt * ay - turn.two_omega_dt * vx
+    else:
+        px = vx + h * ax
+        py = vy + h * ay
+        vx = turn.cos_v * px + turn.sin_v * py + h * ax
+        vy = turn.cos_v * py - turn.sin_v * px + h * ay
+    vx -= back * y
+    vy += back * x
+
+    inv_inertia = dt * monomer[r + INV_INERTIA]
+    ux = monomer[r + WX] + inv_inertia * force[q + TORQUE_X]
+    uy = monomer[r + WY] + inv_inertia * force[q + TORQUE_Y]
+    wx = turn.cos_w * ux + turn.sin_w * uy
+    wy = turn.cos_w * uy - turn.sin_w * ux
+    wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + turn.spin_euler + (turn.alpha * dt + turn.back) * driven
+
+    mass = driven * monomer[r + MASS]
+    own = driven * monomer[r + INERTIA]
+    monomer[r + VX] = vx
+    monomer[r + VY] = vy
+    monomer[r + VZ] = vz
+    monomer[r + WX] = wx
+    monomer[r + WY] = wy
+    monomer[r + WZ] = wz
+    monomer[r + X] = x + dt * vx
+    monomer[r + Y] = y + dt * vy
+    monomer[r + Z] += dt * vz
+    for number in range(FORCE_ROW):  # the whole row, which is one store
+        force[q + np.uint64(number)] = 0.0
+    momentum = mass * (x * vy - y * vx) + own * wz
+    return momentum, mass * (x * x + y * y) + own, vx * vx + vy * vy + vz * vz
+
+
 @jit
 def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
     """Move all monomers by one step in the frame that turns with omega about z, and clear the forces.
@@ -189,73 +304,15 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
 
     The exact treatment turns the velocity by the angle -2 omega dt between two half kicks (Boris 1970).
     """
-    h = 0.5 * dt
-    square = omega * omega
-    cos_v = math.cos(2.0 * omega * dt)
-    sin_v = math.sin(2.0 * omega * dt)
-    cos_w = 1.0
-    sin_w = 0.0
-    spin_euler = 0.0
-    if drive.spin_terms:
-        cos_w = math.cos(omega * dt)
-        sin_w = math.sin(omega * dt)
-        spin_euler = -domega * dt
-    alpha = 0.0
-    back = 0.0
-    if drive.torque:
-        alpha = domega
-        back = unwind
-    two_omega_dt = 2.0 * omega * dt
+    turn = turning_step(dt, omega, domega, unwind, drive)
     angular_momentum = 0.0
     inertia = 0.0
     fastest = 0.0
     for k in range(n):
-        r = np.uint64(k) * _ROW
-        q = np.uint64(k) * _FORCE_ROW
-        x = monomer[r + X]
-        y = monomer[r + Y]
-        driven = monomer[r + DRIVEN]
-        inv_mass = monomer[r + INV_MASS]
-        turn = alpha * driven - domega
-        ax = force[q + FORCE_X] * inv_mass + square * x - turn * y
-        ay = force[q + FORCE_Y] * inv_mass + square * y + turn * x
-        vx = monomer[r + VX]
-        vy = monomer[r + VY]
-        vz = monomer[r + VZ] + dt * force[q + FORCE_Z] * inv_mass
-        back_k = back * driven
-        if drive.explicit_coriolis:
-            vx, vy = vx + dt * ax + two_omega_dt * vy, vy + dt * ay - two_omega_dt * vx
-        else:
-            px = vx + h * ax
-            py = vy + h * ay
-            vx = cos_v * px + sin_v * py + h * ax
-            vy = cos_v * py - sin_v * px + h * ay
-        vx -= back_k * y
-        vy += back_k * x
-
-        inv_inertia = dt * monomer[r + INV_INERTIA]
-        ux = monomer[r + WX] + inv_inertia * force[q + TORQUE_X]
-        uy = monomer[r + WY] + inv_inertia * force[q + TORQUE_Y]
-        wx = cos_w * ux + sin_w * uy
-        wy = cos_w * uy - sin_w * ux
-        wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + spin_euler + (alpha * dt + back) * driven
-
-        mass = driven * monomer[r + MASS]
-        own = driven * monomer[r + INERTIA]
-        angular_momentum += mass * (x * vy - y * vx) + own * wz
-        inertia += mass * (x * x + y * y) + own
-        speed = vx * vx + vy * vy + vz * vz
+        momentum_k, inertia_k, speed = kick_and_drift_one(
+            monomer, force, np.uint64(k) * _ROW, np.uint64(k) * _FORCE_ROW, dt, turn
+        )
+        angular_momentum += momentum_k
+        inertia += inertia_k
         fastest = max(fastest, speed)
-
-        monomer[r + VX] = vx
-        monomer[r + VY] = vy
-        monomer[r + VZ] = vz
-        monomer[r + WX] = wx
-        monomer[r + WY] = wy
-        monomer[r + WZ] = wz
-        monomer[r + X] = x + dt * vx
-        monomer[r + Y] = y + dt * vy
-        monomer[r + Z] += dt * vz
-        for number in range(FORCE_ROW):  # the whole row, which is one store
-            force[q + np.uint64(number)] = 0.0
     return angular_momentum, inertia, math.sqrt(fastest)

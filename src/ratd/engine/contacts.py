@@ -193,6 +193,16 @@ def remove_contact(state, k):
 
 
 @jit
+def contact_timestep(state, k):
+    """t_dis [s] of contact k, Eq. 31 with the lighter mass of the pair."""
+    at = contact_start(k)
+    r = reduced_radius(state.contact[at + A_I], state.contact[at + A_J])
+    r0 = equilibrium_contact_radius(r, state.material[SURFACE_ENERGY], state.material[REDUCED_MODULUS])
+    light = min(state.monomer[state.pair_i[k] * _ROW + MASS], state.monomer[state.pair_j[k] * _ROW + MASS])
+    return dissipation_time(light, r, r0, state.material[SURFACE_ENERGY])
+
+
+@jit
 def update_contact_rates(state, timestep_factor, implicit_damping):
     """Set the time step that the contacts allow and the rates of the implicit damping.
 
@@ -218,12 +228,7 @@ def update_contact_rates(state, timestep_factor, implicit_damping):
         c = contact[at + DAMPING]
         total[i] += c
         total[j] += c
-        a_i = contact[at + A_I]
-        a_j = contact[at + A_J]
-        r = reduced_radius(a_i, a_j)
-        r0 = equilibrium_contact_radius(r, state.material[SURFACE_ENERGY], state.material[REDUCED_MODULUS])
-        light = min(monomer[i * _ROW + MASS], monomer[j * _ROW + MASS])
-        step = min(step, dissipation_time(light, r, r0, state.material[SURFACE_ENERGY]))
+        step = min(step, contact_timestep(state, k))
     for k in range(n_contacts):
         i = state.pair_i[k]
         j = state.pair_j[k]

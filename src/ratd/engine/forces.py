@@ -11,11 +11,12 @@ import numpy as np
 from ratd._accelerate import jit
 from ratd._fastmath import reciprocal, reciprocal_root
 from ratd._rows import add_columns, gather_differences, gather_sides
+from ratd.engine.contacts import contact_start
 from ratd.engine.layout import (
     A_I, A_J, BLOCK, COMPRESSION, DAMPING, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST,
     FX, FY, FZ, INV_DELTA0, INV_SUM, INV_XI2, INV_ZETA2, K_ROLL, K_SLIDE,
-    K_TWIST, LANES, NCX, NCY, NCZ, NIX, NIY, NIZ, NJX, NJY, NJZ, NORMAL, N_SCRATCH, PHI, PULL_OFF, S, TIX, TIY,
-    TIZ, TJX, TJY, TJZ, VECTOR, WIX, WIY, WIZ, WJX, WJY, WJZ,
+    K_TWIST, LANES, NCX, NCY, NCZ, NIX, NIY, NIZ, NJX, NJY, NJZ, NORMAL, N_SCRATCH, PHI, PULL_OFF, ROW, S, TIX, TIY,
+    TIZ, TJX, TJY, TJZ, VECTOR, VX, VY, VZ, WIX, WIY, WIZ, WJX, WJY, WJZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.laws.jkr import COMPRESSION_END, contact_state, normal_force
 from ratd.laws.tangential import (
@@ -29,6 +30,7 @@ from ratd.laws.tangential import (
 )
 
 _LANES = np.uint64(LANES)
+_ROW = np.uint64(ROW)
 SCRATCH_SIZE = N_SCRATCH * LANES
 
 
@@ -248,6 +250,58 @@ def _scatter(force, pair_i, pair_j, scratch, first, count):
         add_columns(force, pair_j, first + q, scratch, FX + q, TJX + q, _LANES, -1.0)
 
 
+@jit(forceinline=True)
+def _compute(contact, scratch, start, count, dt_drift, dt):
+    """The arithmetic of `count` contacts of one block, between gathering and summing; see `contact_forces`."""
+    ended = _direct_and_twist(contact, scratch, start, count, dt_drift)
+    _push_and_damp(contact, scratch, start, count, dt)
+    _turn(contact, scratch, start, count, dt_drift)
+    if _displace(contact, scratch, start, count) > 0:
+        _slip(contact, scratch, start, count)
+    _forces_and_torques(contact, scratch, start, count)
+    return ended
+
+
+@jit(forceinline=True)
+def forces_between(monomer, contact, pair_i, pair_j, scratch, first, count, dt_drift, dt):
+    """Advance `count` contacts of one block, from contact `first` on, and leave their forces in `scratch`.
+
+    One number after the other, where `contact_forces` takes eight contacts at once: for processors that have no
+    vectors, and to test the gathering of that.
+
+    Parameters
+    ----------
+    monomer, contact, pair_i, pair_j, scratch, dt_drift, dt
+        As for `contact_forces`.
+    first : int
+        Number of the first contact.
+    count : int
+        Number of contacts; they stand in one block.
+
+    Returns
+    -------
+    int
+        Number of contacts that are beyond the end of the branch.
+    """
+    for lane in range(count):
+        q = np.uint64(lane)
+        i = pair_i[np.uint64(first) + q] * _ROW
+        j = pair_j[np.uint64(first) + q] * _ROW
+        scratch[DX + q] = monomer[i + X] - monomer[j + X]
+        scratch[DY + q] = monomer[i + Y] - monomer[j + Y]
+        scratch[DZ + q] = monomer[i + Z] - monomer[j + Z]
+        scratch[DVX + q] = monomer[i + VX] - monomer[j + VX]
+        scratch[DVY + q] = monomer[i + VY] - monomer[j + VY]
+        scratch[DVZ + q] = monomer[i + VZ] - monomer[j + VZ]
+        scratch[WIX + q] = monomer[i + WX]
+        scratch[WIY + q] = monomer[i + WY]
+        scratch[WIZ + q] = monomer[i + WZ]
+        scratch[WJX + q] = monomer[j + WX]
+        scratch[WJY + q] = monomer[j + WY]
+        scratch[WJZ + q] = monomer[j + WZ]
+    return _compute(contact, scratch, contact_start(first), count, dt_drift, dt)
+
+
 @jit
 def contact_forces(monomer, force, contact, pair_i, pair_j, scratch, n_contacts, dt_drift, dt):
     """Add the forces and torques of all contacts to `force`.
@@ -277,11 +331,6 @@ def contact_forces(monomer, force, contact, pair_i, pair_j, scratch, n_contacts,
         start = np.uint64(first // LANES * BLOCK)
         at = np.uint64(first)
         _gather(monomer, pair_i, pair_j, scratch, at, count)
-        ended += _direct_and_twist(contact, scratch, start, count, dt_drift)
-        _push_and_damp(contact, scratch, start, count, dt)
-        _turn(contact, scratch, start, count, dt_drift)
-        if _displace(contact, scratch, start, count) > 0:
-            _slip(contact, scratch, start, count)
-        _forces_and_torques(contact, scratch, start, count)
+        ended += _compute(contact, scratch, start, count, dt_drift, dt)
         _scatter(force, pair_i, pair_j, scratch, at, count)
     return ended

@@ -94,6 +94,41 @@ def note_lost(state, mass, members):
 
 
 @jit
+def drop(state, gone, place):
+    """Take the fragments of which `gone` is true out of the arrays; the others keep their order.
+
+    Parameters
+    ----------
+    state : State
+    gone : (fragments,) array of bool or int
+        Which fragments go.
+    place : (n,) array of int
+        Working space, n being the number of monomers.
+    """
+    n = state.counter[MONOMERS]
+    monomer = state.monomer
+    for k in range(state.counter[CONTACTS] - 1, -1, -1):
+        if gone[state.fragment[state.pair_i[k]]]:
+            remove_contact(state, k)
+    kept = 0
+    for k in range(n):
+        place[k] = kept
+        if gone[state.fragment[k]]:
+            continue
+        if kept < k:
+            for field in range(ROW):
+                offset = np.uint64(field)
+                monomer[np.uint64(kept) * _ROW + offset] = monomer[np.uint64(k) * _ROW + offset]
+            state.identity[kept] = state.identity[k]
+            state.fragment[kept] = state.fragment[k]
+        kept += 1
+    for k in range(state.counter[CONTACTS]):
+        state.pair_i[k] = np.uint64(place[state.pair_i[k]])
+        state.pair_j[k] = np.uint64(place[state.pair_j[k]])
+    state.counter[MONOMERS] = kept
+
+
+@jit
 def drop_departed(state, fragments):
     """Drop the fragments that have left for good, noting their mass and number of monomers.
 
@@ -144,24 +179,5 @@ def drop_departed(state, fragments):
     if dropped == 0:
         return 0
 
-    for k in range(state.counter[CONTACTS] - 1, -1, -1):
-        if gone[state.fragment[state.pair_i[k]]]:
-            remove_contact(state, k)
-    place = np.empty(n, dtype=np.int64)
-    kept = 0
-    for k in range(n):
-        place[k] = kept
-        if gone[state.fragment[k]]:
-            continue
-        if kept < k:
-            for field in range(ROW):
-                offset = np.uint64(field)
-                monomer[np.uint64(kept) * _ROW + offset] = monomer[np.uint64(k) * _ROW + offset]
-            state.identity[kept] = state.identity[k]
-            state.fragment[kept] = state.fragment[k]
-        kept += 1
-    for k in range(state.counter[CONTACTS]):
-        state.pair_i[k] = np.uint64(place[state.pair_i[k]])
-        state.pair_j[k] = np.uint64(place[state.pair_j[k]])
-    state.counter[MONOMERS] = kept
+    drop(state, gone, np.empty(n, dtype=np.int64))
     return dropped

@@ -18,15 +18,20 @@ _FORCE_ROW = np.uint64(FORCE_ROW)
 
 
 @jit
+def contact_stress(state, k):
+    """|F_N|/(pi r^2) [Pa] of contact k."""
+    at = contact_start(k)
+    x = state.contact[at + S] ** 2
+    return abs(state.contact[at + NORMAL]) * state.contact[at + INV_AREA] / (x * x)
+
+
+@jit
 def total_stress(state):
     """sigma_Sigma [Pa]: sum over the contacts of the largest fragment of |F_N|/(pi r^2), Eq. 32."""
-    contact = state.contact
     stress = 0.0
     for k in range(state.counter[CONTACTS]):
         if state.fragment[state.pair_i[k]] == 0:
-            at = contact_start(k)
-            x = contact[at + S] ** 2
-            stress += abs(contact[at + NORMAL]) * contact[at + INV_AREA] / (x * x)
+            stress += contact_stress(state, k)
     return stress
 
 
@@ -52,6 +57,23 @@ def dissipated(state):
 
 
 @jit
+def kinetic_energy(state, k):
+    """Kinetic energy [J] of monomer k in the inertial frame, of its velocity and of its spin, (2,)."""
+    omega = state.scalar[OMEGA]
+    r = np.uint64(k) * _ROW
+    vx = state.monomer[r + VX] - omega * state.monomer[r + Y]
+    vy = state.monomer[r + VY] + omega * state.monomer[r + X]
+    vz = state.monomer[r + VZ]
+    wx = state.monomer[r + WX]
+    wy = state.monomer[r + WY]
+    wz = state.monomer[r + WZ] + omega
+    return (
+        0.5 * state.monomer[r + MASS] * (vx * vx + vy * vy + vz * vz),
+        0.5 * state.monomer[r + INERTIA] * (wx * wx + wy * wy + wz * wz),
+    )
+
+
+@jit
 def stored_energy(state):
     """Kinetic energy in the inertial frame and potential energy of the contacts, of the largest fragment [J].
 
@@ -59,18 +81,11 @@ def stored_energy(state):
     dt times the power of the forces.
     """
     kinetic = 0.0
-    omega = state.scalar[OMEGA]
     for k in range(state.counter[MONOMERS]):
         if state.fragment[k] == 0:
-            r = np.uint64(k) * _ROW
-            vx = state.monomer[r + VX] - omega * state.monomer[r + Y]
-            vy = state.monomer[r + VY] + omega * state.monomer[r + X]
-            vz = state.monomer[r + VZ]
-            wx = state.monomer[r + WX]
-            wy = state.monomer[r + WY]
-            wz = state.monomer[r + WZ] + omega
-            kinetic += 0.5 * state.monomer[r + MASS] * (vx * vx + vy * vy + vz * vz)
-            kinetic += 0.5 * state.monomer[r + INERTIA] * (wx * wx + wy * wy + wz * wz)
+            moving, spinning = kinetic_energy(state, k)
+            kinetic += moving
+            kinetic += spinning
     potential = 0.0
     for k in range(state.counter[CONTACTS]):
         if state.fragment[state.pair_i[k]] == 0:
