@@ -114,7 +114,7 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
     slow swaying of long arms, which contacts hardly damp, does not go on for ever.
     """
     state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
-    goal = RESIDUAL * contact_field(state, PULL_OFF).min()
+    goal = residual_goal(state)
     kinetic = 0.0
     for _ in range(RELAXATION_ROUNDS):
         residual = residual_force(state)
@@ -127,7 +127,17 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
             kinetic = 0.0
     else:
         raise RuntimeError(f"the grain does not come to rest: net force {residual:.2e} N, allowed {goal:.2e} N")
+    settle(state, timestep_factor)
+    return state
 
+
+def residual_goal(state):
+    """Net force [N] on any monomer below which a grain counts as relaxed."""
+    return RESIDUAL * contact_field(state, PULL_OFF).min()
+
+
+def settle(state, timestep_factor):
+    """Make a relaxed state the start of a run: at rest, centred, z along a_1, nothing dissipated, time 0."""
     come_to_rest(state)
     find_fragments(state)
     position, mass, radius = largest_fragment(state)
@@ -138,7 +148,6 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
     for field in (E_SLIDE, E_ROLL, E_TWIST, E_DAMP):
         contact_blocks(state)[:, int(field) // LANES, :] = 0.0
     update_contact_rates(state, timestep_factor, True)
-    return state
 
 
 def spin_up(
@@ -201,76 +210,153 @@ def spin_up(
     InputError
         If an argument is not usable.
     """
-    _check(grain, timestep_factor, damping, max_steps, records, snapshot_every)
-    if epsilon is None and angular_acceleration is None:
-        epsilon = EPSILON
-    omega_1 = cut_bound(grain)
-    motion = make_drive(
-        drive,
-        omega_1=FIRST_LOSS * omega_1,
-        epsilon=epsilon,
-        angular_acceleration=angular_acceleration,
-        coriolis=coriolis,
-    )
-    implicit = damping == "implicit"
-    key = _fingerprint(grain, motion, timestep_factor, implicit, records, snapshot_every)
-    loaded = _load(checkpoint, key)
-    if loaded is None:
-        state = relax(grain, timestep_factor=timestep_factor)
-        update_contact_rates(state, timestep_factor, implicit)
+    run = Run(
+        grain, drive, epsilon, angular_acceleration, coriolis, timestep_factor, damping, max_steps, records,
+        snapshot_every,
+    )  # fmt: skip
+    if not run.load(checkpoint):
+        run.begin(relax(grain, timestep_factor=timestep_factor))
+    watch = Watch(run, progress)
+    saved = time.monotonic()
+    while run.reason is None:
+        run.state, code = _advance(
+            run.state, run.motion, run.edge(), run.steps_goal, run.fewest, run.timestep_factor, run.implicit
+        )
+        run.note(code)
+        if run.reason is None and checkpoint is not None and time.monotonic() - saved > CHECKPOINT_INTERVAL:
+            run.save(checkpoint)
+            saved = time.monotonic()
+        watch.look(run)
+    return run.dataset()
+
+
+class Run:
+    """The spin-up of one grain: what was asked for, where it stands, what was recorded. An engine moves it on.
+
+    Parameters
+    ----------
+    grain, drive, epsilon, angular_acceleration, coriolis, timestep_factor, damping, max_steps, records, snapshot_every
+        As for `spin_up`.
+
+    Attributes
+    ----------
+    motion : ratd.drives.Drive
+    omega_1 : float
+        The cut bound [rad/s].
+    implicit : bool
+        Whether the damping is treated implicitly.
+    steps_goal : int
+        Number of steps after which the run ends.
+    fewest : int
+        The run ends when the largest fragment has no more contacts than this.
+    state : ratd.engine.state.State
+    rows : list of list of float
+        The records (see `_record`).
+    snapshots : list of array
+        See `_snapshot`.
+    reason : str or None
+        Why the run has ended, None while it goes on.
+    """
+
+    def __init__(
+        self, grain, drive="prescribed", epsilon=None, angular_acceleration=None, coriolis=None,
+        timestep_factor=TIMESTEP_FACTOR, damping="implicit", max_steps=None, records=300, snapshot_every=0,
+    ):  # fmt: skip
+        _check(grain, timestep_factor, damping, max_steps, records, snapshot_every)
+        if epsilon is None and angular_acceleration is None:
+            epsilon = EPSILON
+        self.grain, self.drive, self.epsilon, self.damping = grain, drive, epsilon, damping
+        self.timestep_factor, self.records, self.snapshot_every = timestep_factor, records, snapshot_every
+        self.omega_1 = cut_bound(grain)
+        self.motion = make_drive(
+            drive,
+            omega_1=FIRST_LOSS * self.omega_1,
+            epsilon=epsilon,
+            angular_acceleration=angular_acceleration,
+            coriolis=coriolis,
+        )
+        self.implicit = damping == "implicit"
+        self.steps_goal = np.iinfo(np.int64).max if max_steps is None else int(max_steps)
+        self.reason = None
+
+    @property
+    def key(self):
+        """What a checkpoint must have been made with to be of use."""
+        return _fingerprint(
+            self.grain, self.motion, self.timestep_factor, self.implicit, self.records, self.snapshot_every
+        )
+
+    def begin(self, state):
+        """Start from a relaxed state."""
+        update_contact_rates(state, self.timestep_factor, self.implicit)
         state.scalar[DT_DRIFT] = state.scalar[DT]
         find_fragments(state)
-        rows = [_record(state, grain.material.density)]
-        snapshots = [_snapshot(state)] if snapshot_every else []
-    else:
-        state, rows, snapshots = loaded
-    first = rows[0]
-    fewest = 1 if first[4] > 1 else 0
-    steps_goal = np.iinfo(np.int64).max if max_steps is None else int(max_steps)
+        self._start(state, [_record(state, self.grain.material.density)], [])
+        if self.snapshot_every:
+            self.snapshots.append(_snapshot(state))
 
-    watch = _Watch(state, motion, first[2], progress)
-    saved = time.monotonic()
-    reason = None
-    while reason is None:
-        goal = min(_edge(len(rows), omega_1, records), OMEGA_RAT)
-        state, code = _advance(state, motion, goal, steps_goal, fewest, timestep_factor, implicit)
+    def _start(self, state, rows, snapshots):
+        self.state, self.rows, self.snapshots = state, rows, snapshots
+        self.fewest = 1 if rows[0][4] > 1 else 0
+
+    def edge(self, ahead=0):
+        """Angular velocity [rad/s] of the next record, or of the one that comes `ahead` records after it."""
+        return min(_edge(len(self.rows) + ahead, self.omega_1, self.records), OMEGA_RAT)
+
+    def wants_snapshot(self, ahead=0):
+        """Whether the next record, or the one that comes `ahead` records after it, has a snapshot."""
+        return bool(self.snapshot_every) and (len(self.rows) + ahead) % self.snapshot_every == 0
+
+    def note(self, code):
+        """Record the state, for which `advance` gave a code, and see whether the run has ended."""
+        snapshot = self.wants_snapshot()
         if code == FEW_CONTACTS:
-            _let_go(state)
-        rows.append(_record(state, grain.material.density))
-        if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or code == FEW_CONTACTS):
-            snapshots.append(_snapshot(state))
+            _let_go(self.state)
+        self.rows.append(_record(self.state, self.grain.material.density))
+        if snapshot or (self.snapshot_every and code == FEW_CONTACTS):
+            self.snapshots.append(_snapshot(self.state))
         if code == FEW_CONTACTS:
-            reason = "one contact left"
+            self.reason = "one contact left"
         elif code == STEPS_DONE:
-            reason = "max_steps reached"
-        elif rows[-1][0] >= OMEGA_RAT * (1.0 - 1e-9):
-            reason = "omega_RAT reached"
-        elif checkpoint is not None and time.monotonic() - saved > CHECKPOINT_INTERVAL:
-            _save(checkpoint, key, state, rows, snapshots)
-            saved = time.monotonic()
-        watch.look(state, rows[-1])
+            self.reason = "max_steps reached"
+        elif self.rows[-1][0] >= OMEGA_RAT * (1.0 - 1e-9):
+            self.reason = "omega_RAT reached"
 
-    initial = dict(zip(RECORDS, first[:-1], strict=True))
-    run = _dataset(state, rows, snapshots, grain)
-    run.attrs = {
-        "drive": drive,
-        "spin_up_law": SPIN_UP_LAWS[motion.law],
-        "epsilon": np.nan if epsilon is None else float(epsilon),
-        "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2,
-        "coriolis": "explicit" if motion.explicit_coriolis else "exact",
-        "damping": damping,
-        "timestep_factor": float(timestep_factor),
-        "steps": int(state.counter[STEPS]),
-        "timestep": first[-1],
-        "end_reason": reason,
-        "material": grain.material.name,
-        "type": grain.type or "",
-        "a_eff": grain.effective_radius,
-        "seed": -1 if grain.seed is None else int(grain.seed),
-        "cut_bound": omega_1,
-    } | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
-    run.attrs |= {f"initial_{name}": int(initial[name]) for name in ("n_monomers", "n_contacts")}
-    return run
+    def save(self, path):
+        """Keep the run in a file, from which `load` goes on."""
+        _save(path, self.key, self.state, self.rows, self.snapshots)
+
+    def load(self, path):
+        """Go on from a file; False when there is none, or it is damaged or of another run."""
+        loaded = _load(path, self.key)
+        if loaded is not None:
+            self._start(*loaded)
+        return loaded is not None
+
+    def dataset(self):
+        """The finished run, see `spin_up`."""
+        first, motion, grain = self.rows[0], self.motion, self.grain
+        initial = dict(zip(RECORDS, first[:-1], strict=True))
+        run = _dataset(self.state, self.rows, self.snapshots, grain)
+        run.attrs = {
+            "drive": self.drive,
+            "spin_up_law": SPIN_UP_LAWS[motion.law],
+            "epsilon": np.nan if self.epsilon is None else float(self.epsilon),
+            "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2,
+            "coriolis": "explicit" if motion.explicit_coriolis else "exact",
+            "damping": self.damping,
+            "timestep_factor": float(self.timestep_factor),
+            "steps": int(self.state.counter[STEPS]),
+            "timestep": first[-1],
+            "end_reason": self.reason,
+            "material": grain.material.name,
+            "type": grain.type or "",
+            "a_eff": grain.effective_radius,
+            "seed": -1 if grain.seed is None else int(grain.seed),
+            "cut_bound": self.omega_1,
+        } | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
+        run.attrs |= {f"initial_{name}": int(initial[name]) for name in ("n_monomers", "n_contacts")}
+        return run
 
 
 def _check(grain, timestep_factor, damping, max_steps, records, snapshot_every):
@@ -371,28 +457,30 @@ def _dataset(state, rows, snapshots, grain):
     return xr.Dataset(variables)
 
 
-class _Watch:
+class Watch:
     """Tells how far a run is, every few seconds, with a guess of the time to go from the pace so far."""
 
-    def __init__(self, state, drive, mass, progress):
-        self.drive, self.mass, self.progress = drive, mass, progress
+    def __init__(self, run, progress):
+        self.omega_1, self.mass, self.progress = run.motion.omega_1, run.rows[0][2], progress
         self.start = self.last = time.monotonic()
-        self.begun = self._done(state.scalar[OMEGA])
+        self.begun = self._done(run.state.scalar[OMEGA])
 
     def _done(self, omega):
-        """A number that grows evenly with the steps under the constant-epsilon law: 1 at omega_1, 2 at the end."""
-        ratio = omega / self.drive.omega_1
-        return ratio if ratio < 1.0 else 2.0 - 1.0 / ratio
+        """A number that grows evenly with the steps under the constant-epsilon law: 1 at omega_1, 3 at the end."""
+        ratio = omega / self.omega_1
+        return ratio**2 if ratio < 1.0 else 3.0 - 2.0 / ratio
 
-    def look(self, state, row):
+    def look(self, run):
+        """Tell, if it is time to."""
+        row = run.rows[-1]
         now = time.monotonic()
         if self.progress is None or now - self.last < PROGRESS_INTERVAL:
             return
         self.last = now
         done = self._done(row[0])
         # Most of the mass gone: each further step costs little.
-        to_go = (now - self.start) * max(0.0, 2.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
-        self.progress(row[0], row[2] / self.mass, to_go, int(state.counter[STEPS]))
+        to_go = (now - self.start) * max(0.0, 3.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
+        self.progress(row[0], row[2] / self.mass, to_go, int(run.state.counter[STEPS]))
 
 
 def _fingerprint(grain, *settings):
