@@ -9,7 +9,7 @@ import pytest
 import ratd
 from ratd import schema
 from ratd.materials import MATERIALS
-from ratd.validation import convergence, energy, growth, literal, pull_off, theory
+from ratd.validation import convergence, energy, growth, literal, pull_off, theory, vibrating_pair
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.show import convergence as show_convergence
 from ratd.validation.show import energy as show_energy
@@ -43,11 +43,24 @@ def test_a_pair_parts_where_the_force_is_that_of_pull_off(a_1, a_2, material):
     assert omega == pytest.approx(pull_off.force_controlled_omega(a_1, a_2, material), rel=0.01)
 
 
-def test_an_undamped_pair_from_first_touch_parts_between_both_solutions():
-    material = MATERIALS["q-S"]
-    omega = pull_off.parting_omega(40e-9, 40e-9, material, epsilon=0.01, timestep_factor=0.02, damped=False)
-    assert pull_off.eq35_omega(40e-9, 40e-9, material) * 0.97 < omega
-    assert omega < pull_off.force_controlled_omega(40e-9, 40e-9, material) * 0.97
+@pytest.mark.parametrize(("a_1", "a_2"), [(10e-9, 10e-9), (40e-9, 40e-9), (30e-9, 100e-9)])
+def test_an_undamped_pair_from_first_touch_parts_where_its_vibration_reaches_the_barrier(a_1, a_2):
+    """Engine, integration of the distance alone, and conservation of the action, at a step where they agree."""
+    material, epsilon = MATERIALS["q-S"], 0.05
+    adiabatic = vibrating_pair.adiabatic_omega(a_1, a_2, material)
+    vibrating = vibrating_pair.vibrating_omega(a_1, a_2, material, epsilon)
+    omega = pull_off.parting_omega(a_1, a_2, material, epsilon=epsilon, timestep_factor=0.0025, damped=False)
+    assert vibrating == pytest.approx(adiabatic, rel=0.015)
+    assert omega == pytest.approx(vibrating, rel=0.005)
+    assert adiabatic < pull_off.eq35_omega(a_1, a_2, material)
+
+
+def test_action_of_small_vibrations_is_that_of_the_harmonic_oscillator():
+    """J = 2 pi E/frequency with the stiffness 1.2 F_C/delta_0 (Eqs. 9 and 12)."""
+    pair = vibrating_pair.Pair.of(20e-9, 50e-9, MATERIALS["q-S"])
+    s = 1.0 - 1e-4
+    energy = pair.potential(s, 0.0) - pair.potential(1.0, 0.0)
+    assert pair.action(s, 0.0) == pytest.approx(2 * np.pi * energy / pair.frequency, rel=1e-3)
 
 
 def test_solutions_for_equal_monomers_are_those_of_the_paper():
@@ -59,10 +72,13 @@ def test_solutions_for_equal_monomers_are_those_of_the_paper():
 
 
 def test_pull_off_is_drawn_and_told(tmp_path):
-    rows = pull_off.compute({"material": "q-S", "pairs": 2, "ratios": [1, 5], "epsilon": 0.05, "seed": 0})
-    assert len(rows) == 2 * (2 + 4)
+    rows = pull_off.compute(
+        {"material": "q-S", "pairs": 2, "ratios": [1, 5], "seed": 0, "undamped_steps": [0.05, 0.02]}
+        | {start: {"epsilon": 0.05, "timestep_factor": 0.05} for start in ("damped", "undamped")}
+    )
+    assert len(rows) == 2 * (2 + 4) + 2
     text = works(show_pull_off, rows)
-    assert "undamped" in text
+    assert "undamped" in text and "f = 0.02" in text
     write_table(tmp_path / "a.nc", rows, pull_off.KIND, {})
     back = read_tables([tmp_path / "a.nc", tmp_path / "a.nc"], pull_off.KIND)
     pd.testing.assert_frame_equal(back, pd.DataFrame(rows + rows)[list(pull_off.COLUMNS)], check_dtype=False)

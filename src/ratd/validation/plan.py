@@ -63,7 +63,7 @@ class Plan:
         }
 
     def _pull_off(self, own):
-        shared = {key: own[key] for key in ("pairs", "ratios", "epsilon", "seed")}
+        shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
         return {material: shared | {"material": material} for material in own["materials"]}
 
     def _literal(self, own):

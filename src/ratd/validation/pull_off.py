@@ -1,4 +1,8 @@
-"""Pull-off: the angular velocity at which a pair of monomers parts, against the exact answer and Eq. 35."""
+"""Pull-off: the angular velocity at which a pair of monomers parts, against the exact answer and Eq. 35.
+
+A damped pair parts where the centrifugal force is the pull-off force. An undamped pair from first touch keeps
+vibrating, and parts where its vibration reaches the top of the barrier: see `ratd.validation.vibrating_pair`.
+"""
 
 import math
 from dataclasses import replace
@@ -9,12 +13,14 @@ from ratd.drives import make_drive
 from ratd.engine.advance import FEW_CONTACTS, advance
 from ratd.engine.layout import OMEGA
 from ratd.engine.state import new_state
-from ratd.materials import equilibrium_compression, get_material, pull_off_force, reduced_radius
+from ratd.materials import equilibrium_compression, get_material, reduced_radius
 from ratd.validation.tables import table_kind
+from ratd.validation.vibrating_pair import Pair, adiabatic_omega, vibrating_omega
 
 COLUMNS = {
     "material": ("", "material"),
     "start": ("", "damped from equilibrium, or undamped from first touch"),
+    "study": ("", "pairs: many pairs with one step; step: one pair with many steps"),
     "radius_1": ("m", "radius of the smaller monomer"),
     "radius_2": ("m", "radius of the larger monomer"),
     "epsilon": ("1", "(d omega/dt)/omega^2"),
@@ -22,12 +28,13 @@ COLUMNS = {
     "omega": ("rad s-1", "angular velocity at which the pair parts"),
     "omega_force": ("rad s-1", "solution for a force that grows slowly"),
     "omega_eq35": ("rad s-1", "Eq. 35 of the paper, for unequal radii with 5/9 of the pull-off force"),
+    "omega_adiabatic": ("rad s-1", "solution for an undamped pair from first touch whose omega grows slowly"),
+    "omega_vibrating": ("rad s-1", "integration of the distance of an undamped pair from first touch, at this epsilon"),
 }
 KIND = table_kind("pull_off", "Pairs of monomers that part", COLUMNS)
 SMALLEST, LARGEST = 10e-9, 100e-9
 PIECES = 200
-STARTS = ("damped", "undamped")
-TIMESTEP_FACTOR = {"damped": 0.05, "undamped": 0.05}
+STEP_STUDY_RADIUS = 40e-9
 
 
 def force_controlled_omega(a_1, a_2, material):
@@ -35,9 +42,7 @@ def force_controlled_omega(a_1, a_2, material):
 
     m_red omega^2 (a_1 + a_2) = 3 pi gamma R (physics.md Sect. 5); for equal monomers sqrt(3 pi gamma/(2 m)).
     """
-    m_1, m_2 = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_1, a_2))
-    pull = pull_off_force(reduced_radius(a_1, a_2), material.surface_energy)
-    return math.sqrt(pull * (m_1 + m_2) / (m_1 * m_2 * (a_1 + a_2)))
+    return Pair.of(a_1, a_2, material).force_controlled_omega
 
 
 def eq35_omega(a_1, a_2, material):
@@ -83,19 +88,21 @@ def parting_omega(a_1, a_2, material, *, epsilon, timestep_factor, damped=True):
 
 
 def compute(settings, progress=None):
-    """Equal pairs of random radius (Fig. 10 of the paper), and pairs of given ratio.
+    """Equal pairs of random radius (Fig. 10 of the paper), pairs of given ratio, and one undamped pair at many steps.
 
     Parameters
     ----------
     settings : dict
-        material, pairs (number of random radii), ratios (list), epsilon, seed.
+        material, pairs (number of random radii), ratios (list), seed; ``damped`` and ``undamped`` {epsilon,
+        timestep_factor}; ``undamped_steps`` (list), the f at which the undamped pair of equal monomers of
+        `STEP_STUDY_RADIUS` is spun up.
     progress : callable, optional
         Called with a sentence.
 
     Returns
     -------
     list of dict
-        Rows of `COLUMNS`.
+        Rows of `COLUMNS`; ``omega_vibrating`` is NaN but for the pair of the step study.
     """
     material = get_material(settings["material"])
     rng = np.random.Generator(np.random.PCG64(settings["seed"]))
@@ -103,21 +110,34 @@ def compute(settings, progress=None):
     pairs += [(LARGEST / ratio, LARGEST) for ratio in settings["ratios"]]
     pairs += [(SMALLEST, SMALLEST * ratio) for ratio in settings["ratios"]]
     rows = []
-    for start in STARTS:
-        how = dict(epsilon=settings["epsilon"], timestep_factor=TIMESTEP_FACTOR[start])
-        for a_1, a_2 in pairs:
-            rows.append(
-                dict(
-                    material=material.name,
-                    start=start,
-                    radius_1=a_1,
-                    radius_2=a_2,
-                    omega=parting_omega(a_1, a_2, material, damped=start == "damped", **how),
-                    omega_force=force_controlled_omega(a_1, a_2, material),
-                    omega_eq35=eq35_omega(a_1, a_2, material),
-                    **how,
-                )
-            )
+    for start in ("damped", "undamped"):
+        rows += [one_row(*pair, material, "pairs", start, **settings[start]) for pair in pairs]
         if progress is not None:
             progress(f"{start}: {len(pairs)} pairs")
+    pair = (STEP_STUDY_RADIUS, STEP_STUDY_RADIUS)
+    epsilon = settings["undamped"]["epsilon"]
+    vibrating = vibrating_omega(*pair, material, epsilon)
+    for f in settings["undamped_steps"]:
+        row = one_row(*pair, material, "step", "undamped", epsilon=epsilon, timestep_factor=f)
+        rows.append(row | {"omega_vibrating": vibrating})
+    if progress is not None:
+        progress(f"one pair at {len(settings['undamped_steps'])} steps")
     return rows
+
+
+def one_row(a_1, a_2, material, study, start, *, epsilon, timestep_factor):
+    """One pair spun up by the engine, and what it should give, as a row of `COLUMNS`."""
+    how = dict(epsilon=epsilon, timestep_factor=timestep_factor)
+    return dict(
+        material=material.name,
+        start=start,
+        study=study,
+        radius_1=a_1,
+        radius_2=a_2,
+        omega=parting_omega(a_1, a_2, material, damped=start == "damped", **how),
+        omega_force=force_controlled_omega(a_1, a_2, material),
+        omega_eq35=eq35_omega(a_1, a_2, material),
+        omega_adiabatic=adiabatic_omega(a_1, a_2, material),
+        omega_vibrating=math.nan,
+        **how,
+    )
