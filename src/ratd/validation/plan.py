@@ -48,6 +48,9 @@ class Plan:
             "theory": self._theory,
             "growth": self._growth,
             "energy": self._energy,
+            "energy_step": self._free_grain,
+            "frames": self._free_grain,
+            "forces": self._forces,
         }[check](own)
 
     def _convergence(self, own):
@@ -95,3 +98,15 @@ class Plan:
             f"{kind}_{seed}": shared | {"type": kind, "seed": seed}
             for kind, seed in product(own["types"], range(own["seeds"]))
         }
+
+    def _free_grain(self, own):
+        shared = {key: value for key, value in own.items() if key not in ("types", "size_nm", "seeds")}
+        return {
+            f"{kind}_{seed}": shared | {"type": kind, "a_eff": own["size_nm"] * NM, "seed": seed}
+            for kind, seed in product(own["types"], range(own["seeds"]))
+        }
+
+    def _forces(self, own):
+        shared = {key: value for key, value in own.items() if key not in ("materials", "size_nm")}
+        shared["a_eff"] = own["size_nm"] * NM
+        return {material: shared | {"material": material} for material in own["materials"]}

@@ -1,0 +1,186 @@
+"""Frames: the same free grain integrated in the inertial frame and in one that turns ever faster.
+
+The grain turns, vibrates, and its monomers spin; damping and all inelastic limits are at work. Without the outer torque
+the terms of the turning frame (Eqs. 19-21, 29, 30 of the paper, with those for the spins) change nothing but the
+errors of the scheme: the two trajectories differ by O(dt^2), until chaos has made more of that.
+"""
+
+import math
+
+import numpy as np
+
+from ratd.bound import cut_bound
+from ratd.drives import AT_REST, OMEGA_RAT, angular_velocity, make_drive
+from ratd.engine.advance import STEPS_DONE, advance
+from ratd.engine.contacts import update_contact_rates
+from ratd.engine.layout import DT, STEPS, TIME
+from ratd.engine.measure import dissipated
+from ratd.engine.state import monomer_rows
+from ratd.growth import grow
+from ratd.spinup import relax
+from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, turn
+from ratd.validation.tables import table_kind
+
+COLUMNS = {
+    "material": ("", "material"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "n_monomers": ("1", "monomers"),
+    "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
+    "time": ("s", "time since the start"),
+    "turned": ("rad", "angle by which the frame has turned"),
+    "distance": ("1", "greatest distance between the places of a monomer in both runs, over the mean radius"),
+    "moved": ("1", "greatest distance of a monomer from its place at the start, inertial frame, over the mean radius"),
+    "dissipated": ("J", "energy dissipated so far, inertial frame"),
+}
+KIND = table_kind("frames", "Free grains in two frames", COLUMNS)
+
+
+def turned_angle(drive, start, end):
+    """Angle [rad] by which a frame turns between two times [s]: integral of Eq. 24."""
+    tau = OMEGA_RAT / drive.acceleration
+
+    def angle(time):
+        return OMEGA_RAT * (time + tau * math.expm1(-time / tau))
+
+    return angle(end) - angle(start)
+
+
+def about_z(vectors, angle):
+    """Vectors (n, 3) turned by an angle [rad] about z."""
+    c, s = math.cos(angle), math.sin(angle)
+    return vectors @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def pair_of_states(start, speed, drive, time, timestep_factor, seed):
+    """The same motion of a relaxed grain in both frames.
+
+    Parameters
+    ----------
+    start : State
+        From `ratd.spinup.relax`.
+    speed : float
+        Standard deviation of each component of the velocities, and of the spins times the greatest radius [m/s].
+    drive : Drive
+        Of the turning frame.
+    time : float
+        At which the run begins [s]. The axes of both frames then agree.
+    timestep_factor : float
+        f of Eq. 31.
+    seed : int
+        Of the random velocities.
+
+    Returns
+    -------
+    fixed, turning : State
+
+    Notes
+    -----
+    Velocities stand half a step before the positions. There the frame lies back by half a step, and turns with its
+    omega of that moment: taken at the time of the positions, both would be wrong in first order of the step.
+    """
+    fixed = copied(start)
+    update_contact_rates(fixed, timestep_factor, True)
+    dt = fixed.scalar[DT]
+    rows = monomer_rows(fixed)
+    rng = np.random.default_rng(seed)
+    noise = rng.normal(size=(len(rows), 6))
+    rows[:, VELOCITY] = speed * noise[:, :3]
+    rows[:, SPIN] = speed / rows[:, 3].max() * noise[:, 3:]
+    turn(rows, np.array([0.0, 0.0, angular_velocity(drive, time)[0]]))
+
+    turning = copied(fixed)
+    turning.scalar[TIME] = time
+    omega, _ = angular_velocity(drive, time - 0.5 * dt)
+    axis = np.array([0.0, 0.0, omega])
+    before = monomer_rows(turning)
+    place = before[:, POSITION] - 0.5 * dt * before[:, VELOCITY]
+    back = turned_angle(drive, time - 0.5 * dt, time)
+    before[:, VELOCITY] = about_z(before[:, VELOCITY] - np.cross(axis, place), back)
+    before[:, SPIN] = about_z(before[:, SPIN], back) - axis
+    return fixed, turning
+
+
+def distances(grain, speed, omega, timestep_factor, samples):
+    """How far one grain is from itself in the other frame, over time.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    speed : float
+        See `pair_of_states`.
+    omega : float
+        Angular velocity [rad/s] of grain and frame at the start. The frame has twice that at the end, after the grain
+        has turned by about 1 rad.
+    timestep_factor : float
+        f of Eq. 31.
+    samples : int
+        Times at which to compare.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`.
+    """
+    duration = 1.0 / omega
+    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=omega / duration)._replace(torque=False)
+    time = omega / drive.acceleration
+    start = relax(grain, timestep_factor=timestep_factor)
+    fixed, turning = pair_of_states(start, speed, drive, time, timestep_factor, grain.seed)
+    first = monomer_rows(fixed)[:, POSITION].copy()
+    mean = grain.radius.mean()
+    rows = []
+    steps = math.ceil(duration / fixed.scalar[DT])
+    for sample in range(1, samples + 1):
+        goal = round(steps * sample / samples)
+        for state, frame in ((fixed, AT_REST), (turning, drive)):
+            code = advance(state, frame, np.inf, goal, -1, timestep_factor, True)
+            if code != STEPS_DONE or state.counter[STEPS] != goal:
+                raise RuntimeError(f"the free grain {grain.type} {grain.seed} did not go on at f = {timestep_factor:g}")
+        angle = turned_angle(drive, time, turning.scalar[TIME])
+        place = monomer_rows(fixed)[:, POSITION]
+        other = about_z(monomer_rows(turning)[:, POSITION], angle)
+        if len(place) != len(first) or len(other) != len(first):
+            raise RuntimeError(f"the free grain {grain.type} {grain.seed} lost a part; let it turn more slowly")
+        rows.append(
+            dict(
+                material=grain.material.name,
+                type=grain.type,
+                a_eff=grain.effective_radius,
+                seed=grain.seed,
+                n_monomers=grain.n_monomers,
+                timestep_factor=timestep_factor,
+                time=fixed.scalar[TIME],
+                turned=angle,
+                distance=np.linalg.norm(other - place, axis=1).max() / mean,
+                moved=np.linalg.norm(place - first, axis=1).max() / mean,
+                dissipated=dissipated(fixed).sum(),
+            )
+        )
+    return rows
+
+
+def compute(settings, progress=None):
+    """One grain in both frames with all steps.
+
+    Parameters
+    ----------
+    settings : dict
+        material, type, a_eff [m], seed, speed [m/s], omega (over the cut bound), timestep_factor (list), samples.
+    progress : callable, optional
+        Called with a sentence after each step factor.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`.
+    """
+    grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
+    omega = settings["omega"] * cut_bound(grain)
+    rows = []
+    for f in settings["timestep_factor"]:
+        rows += distances(grain, settings["speed"], omega, f, settings["samples"])
+        if progress is not None:
+            progress(f"f = {f:g}: {rows[-1]['distance']:.1e} mean radii apart at the end")
+    return rows
