@@ -5,14 +5,29 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import kstest
 
 import ratd
 from ratd import schema
 from ratd.materials import MATERIALS
-from ratd.validation import convergence, energy, growth, literal, pull_off, theory, vibrating_pair
+from ratd.validation import (
+    convergence,
+    energy,
+    energy_step,
+    forces,
+    frames,
+    growth,
+    literal,
+    pull_off,
+    theory,
+    vibrating_pair,
+)
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.show import convergence as show_convergence
 from ratd.validation.show import energy as show_energy
+from ratd.validation.show import energy_step as show_energy_step
+from ratd.validation.show import forces as show_forces
+from ratd.validation.show import frames as show_frames
 from ratd.validation.show import growth as show_growth
 from ratd.validation.show import literal as show_literal
 from ratd.validation.show import pull_off as show_pull_off
@@ -154,12 +169,89 @@ def test_growth():
     assert "0.46 ± 0.01" in works(show_growth, rows)
 
 
+def test_arrivals_are_uniform():
+    """Means of 1/2 and squares of 1/3; a test of the whole distribution with a chance of 1e-6 to fail for bad luck."""
+    rows = growth.compute({"material": "q-S", "arrivals": 3000})
+    values = show_growth.uniform_values(pd.DataFrame(rows))
+    assert len(values) == len(show_growth.UNIFORM)
+    for name, own in values.items():
+        assert len(own) == 3000 and kstest(own, "uniform").pvalue > 1e-6, name
+    aggregates = growth.compute({"material": "q-S", "type": "BA", "monomers": 32, "seeds": 2})
+    assert "squared impact parameter" in works(show_growth, rows + aggregates)
+
+
+def test_uneven_arrivals_are_noticed():
+    table = pd.DataFrame(growth.compute({"material": "q-S", "arrivals": 3000}))
+    uneven = show_growth.uniform_values(table.assign(impact=np.sqrt(table["impact"])))
+    assert kstest(uneven["squared impact parameter"], "uniform").pvalue < 1e-6
+
+
 def test_energy_put_in_is_stored_or_dissipated():
     rows = energy.compute(SMALL | {"type": "BA", "epsilon": 0.05, "timestep_factor": 0.05})
     table = pd.DataFrame(rows)
     gap = show_energy.gap(table)
     assert abs(gap.iloc[-1]) < 0.01 * table["work"].iloc[-1]
     works(show_energy, rows)
+
+
+def test_an_elastic_grain_keeps_its_energy_to_second_order_of_the_step():
+    rows = energy_step.compute(
+        SMALL
+        | {"a_eff": 70e-9, "seed": 4, "speed": 0.03, "timestep_factor": [0.0125, 0.025, 0.05, 0.1]}
+        | {"steps": 20_000, "steps_at": 0.05, "samples": 40}
+    )
+    table = pd.DataFrame(rows)
+    assert (table["dissipated"] == 0.0).all() and (table["contacts_made"] == 0).all()
+    assert show_energy_step.exponents(table).iloc[0] == pytest.approx(2.0, abs=0.2)
+    assert show_energy_step.greatest_errors(table).xs(0.05, level="timestep_factor").max() < 1e-3
+    assert "No run dissipated" in works(show_energy_step, rows)
+
+
+def test_frames_agree():
+    """A free, turning, vibrating grain in the inertial frame and in one that turns ever faster."""
+    rows = frames.compute(
+        SMALL | {"type": "BAM1", "a_eff": 90e-9, "seed": 3, "speed": 0.05, "omega": 0.3}
+        | {"timestep_factor": [0.025, 0.05, 0.1], "samples": 5}
+    )  # fmt: skip
+    table = pd.DataFrame(rows)
+    assert table["moved"].max() > 0.5 and table["turned"].max() == pytest.approx(1.5, rel=0.01)
+    assert table["distance"].max() < 1e-5
+    assert show_frames.exponents(table).iloc[0] > 0.9
+    works(show_frames, rows)
+
+
+def test_a_frame_that_turns_otherwise_than_it_says_is_noticed(monkeypatch):
+    monkeypatch.setattr(frames, "turned_angle", lambda drive, start, end: drive.acceleration * (end - start) * start)
+    rows = frames.compute(
+        SMALL | {"type": "BAM1", "a_eff": 90e-9, "seed": 3, "speed": 0.05, "omega": 0.3}
+        | {"timestep_factor": [0.1], "samples": 2}
+    )  # fmt: skip
+    assert rows[-1]["distance"] > 0.1
+
+
+def test_forces_are_derivatives_of_the_potentials_and_momenta_are_kept():
+    rows = forces.compute(
+        {"material": "q-S", "contacts": 10, "seed": 2, "types": ["BAM1"], "a_eff": 110e-9, "speed": 1.0}
+        | {"timestep_factor": 0.02, "steps": 100_000, "samples": 4}
+    )
+    table = pd.DataFrame(rows)
+    modes = table[table["study"] == "derivative"].groupby("mode")[["force", "torque", "reaction"]]
+    assert (modes.max()[["force", "torque"]].max() < 1e-6).all() and modes.max()["reaction"].max() < 1e-12
+    count = modes.count()
+    assert (count.loc[["normal", "sliding"], "force"] == 10).all() and count.loc["rolling", "force"] == 0
+    assert (count.loc[["sliding", "rolling", "twisting"], "torque"] == 10).all() and count.loc["normal", "torque"] == 0
+    last = rows[-1]
+    assert last["step"] == 100_000 and last["linear"] < 1e-10 and last["angular"] < 1e-10
+    assert all(last[f"dissipated_{mode}"] > 0.0 for mode in forces.DISSIPATION)
+    works(show_forces, rows)
+
+
+def test_a_force_that_is_no_derivative_is_noticed(monkeypatch):
+    right = forces.engine_forces
+    monkeypatch.setattr(forces, "engine_forces", lambda *a: tuple(value * (1 + 1e-5) for value in right(*a)))
+    rng = np.random.default_rng(1)
+    rows = forces.deviations(forces.random_contact(MATERIALS["q-S"], rng, 3.0), MATERIALS["q-S"])
+    assert min(row["torque"] for row in rows[1:]) > 5e-6 and rows[0]["force"] > 5e-6
 
 
 def test_the_spins_share_of_a_pair():
@@ -211,7 +303,8 @@ def test_numbers_in_words():
 def test_plan_names_every_piece_once():
     plan = Plan(CONFIG)
     for extent in EXTENTS:
-        assert set(plan.pieces[extent]) == {"convergence", "pull_off", "literal", "theory", "growth", "energy"}
+        checks = {"convergence", "pull_off", "literal", "theory", "growth", "energy", "energy_step", "frames", "forces"}
+        assert set(plan.pieces[extent]) == checks
         for check, pieces in plan.pieces[extent].items():
             assert pieces and f"validation_{check}" in schema.KINDS
     full = plan.pieces["full"]["convergence"]

@@ -5,7 +5,17 @@ from importlib import import_module
 from ratd import io
 from ratd.figures.style import save
 from ratd.jobs import Job
-from ratd.validation.show import convergence, energy, growth, literal, pull_off, theory  # noqa: F401  (source hash)
+from ratd.validation.show import (  # noqa: F401  (source hash)
+    convergence,
+    energy,
+    energy_step,
+    forces,
+    frames,
+    growth,
+    literal,
+    pull_off,
+    theory,
+)
 from ratd.validation.tables import read_tables
 
 with Job(snakemake) as job:

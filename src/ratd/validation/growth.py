@@ -1,13 +1,21 @@
-"""Growth: porosity and contacts of aggregates of equal monomers against an independent generator, and isotropy."""
+"""Growth: porosity and contacts of aggregates of equal monomers against an independent generator, and isotropy.
+
+Arrivals: the second monomer of many pairs comes in alone on the first, so that its straight line is known from its
+place and its direction. Directions and places should be uniform over the sphere, squared impact parameters uniform up
+to that of a grazing hit.
+"""
 
 import numpy as np
 
+from ratd import growth
 from ratd.growth import grow_with_radii
+from ratd.materials import equilibrium_compression, get_material, reduced_radius
 from ratd.validation.tables import table_kind
 
 MONOMER_RADIUS = 20e-9
 """Any will do: the form of aggregates of equal monomers depends on it by the compression of the contacts only."""
 COLUMNS = {
+    "study": ("", "aggregates: one aggregate; arrivals: one monomer that comes in on another"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
     "migration": ("", "where a monomer rolls to"),
     "n_monomers": ("1", "monomers"),
@@ -20,6 +28,9 @@ COLUMNS = {
     "square_x": ("1", "mean square of the x component of the directions of the contacts"),
     "square_y": ("1", "mean square of the y component of the directions of the contacts"),
     "square_z": ("1", "mean square of the z component of the directions of the contacts"),
+    "impact": ("1", "squared impact parameter of an arrival over the greatest that hits"),
+    **{f"direction_{axis}": ("1", f"{axis} component of the direction of an arrival") for axis in "xyz"},
+    **{f"place_{axis}": ("1", f"{axis} component of the direction to where an arrival ended") for axis in "xyz"},
 }
 KIND = table_kind("growth", "Aggregates of equal monomers", COLUMNS)
 EXPECTED_POROSITY = {
@@ -32,13 +43,57 @@ EXPECTED_CONTACTS = {"BA": (1, 1), "BAM1": (2, 3), "BAM2": (3, 6)}
 """N_con = p N - q without accidental contacts."""
 
 
+def arrival(radius, material, seed):
+    """The line and the place of the second of two monomers of equal radius.
+
+    Parameters
+    ----------
+    radius : float
+        [m]
+    material : ratd.Material
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    direction, place : (3,) arrays
+        Unit vectors: of flight, and from the first monomer to the second.
+    impact : float
+        Squared distance of the line from the first monomer over the squared contact distance, from the two.
+
+    Raises
+    ------
+    RuntimeError
+        If the place is not where the line that was drawn touches.
+
+    Notes
+    -----
+    Growth does not tell its directions; they are drawn again with the same random numbers. A try is a direction (2
+    numbers), a normal (1) and an impact parameter (1), those that miss included.
+    """
+    constants = material.surface_energy, material.reduced_modulus
+    radii = np.full(2, radius)
+    place = growth._aggregate(radii, *constants, 0, False, np.random.Generator(np.random.PCG64(seed)))[1]
+    touching = 2.0 * radius - equilibrium_compression(reduced_radius(radius, radius), *constants)
+    again = np.random.Generator(np.random.PCG64(seed))
+    aside = np.inf
+    while aside >= touching:
+        direction = np.array(growth._random_direction(again))
+        normal = np.array(growth._random_normal(*direction, again))
+        aside = 2.0 * radius * np.sqrt(again.random())
+    across = place - (place @ direction) * direction
+    if place @ direction > 0.0 or np.linalg.norm(across - aside * normal) > 1e-9 * touching:
+        raise RuntimeError(f"the monomer with seed {seed} did not come in on the line that was drawn")
+    return direction, place / np.linalg.norm(place), (across @ across) / touching**2
+
+
 def compute(settings, progress=None):
-    """Grow aggregates of equal monomers, migrating to the nearest place.
+    """Grow aggregates of equal monomers, or let monomers come in on one other.
 
     Parameters
     ----------
     settings : dict
-        material, type, monomers (number), seeds (number).
+        material, and either arrivals (number), or type, monomers (number), seeds (number).
     progress : callable, optional
         Called with a sentence.
 
@@ -47,6 +102,32 @@ def compute(settings, progress=None):
     list of dict
         Rows of `COLUMNS`.
     """
+    rows = arrivals(settings) if "arrivals" in settings else aggregates(settings)
+    if progress is not None:
+        progress(f"{len(rows)} {rows[0]['study']}")
+    return rows
+
+
+def empty_row(study):
+    """A row of `COLUMNS` without values."""
+    return {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()} | {"study": study}
+
+
+def arrivals(settings):
+    """Rows of `COLUMNS`, one an arrival."""
+    material = get_material(settings["material"])
+    rows = []
+    for seed in range(settings["arrivals"]):
+        direction, place, impact = arrival(MONOMER_RADIUS, material, seed)
+        row = empty_row("arrivals") | dict(type="BA", n_monomers=2, seed=seed, impact=impact)
+        for k, axis in enumerate("xyz"):
+            row |= {f"direction_{axis}": direction[k], f"place_{axis}": place[k]}
+        rows.append(row)
+    return rows
+
+
+def aggregates(settings):
+    """Rows of `COLUMNS`, one an aggregate that migrates to the nearest place."""
     rows = []
     for seed in range(settings["seeds"]):
         radius = np.full(settings["monomers"], MONOMER_RADIUS)
@@ -55,7 +136,8 @@ def compute(settings, progress=None):
         direction /= np.linalg.norm(direction, axis=1)[:, None]
         square = (direction**2).mean(axis=0)
         rows.append(
-            dict(
+            empty_row("aggregates")
+            | dict(
                 type=settings["type"],
                 migration="nearest",
                 n_monomers=grain.n_monomers,
@@ -70,6 +152,4 @@ def compute(settings, progress=None):
                 square_z=square[2],
             )
         )
-    if progress is not None:
-        progress(f"{len(rows)} aggregates")
     return rows

@@ -85,12 +85,13 @@ class Plan:
         }
 
     def _growth(self, own):
-        return {
+        pieces = {
             f"{kind}_{number}": {
                 "material": own["material"], "type": kind, "monomers": number, "seeds": own["seeds"]
             }
             for kind, number in product(("BA", "BAM1", "BAM2"), own["monomers"])
         }  # fmt: skip
+        return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 
     def _energy(self, own):
         shared = {"material": own["material"], "a_eff": own["size_nm"] * NM, **self.config["production"]}

@@ -1,10 +1,32 @@
 """Show the form of aggregates of equal monomers."""
 
 import numpy as np
+from scipy.stats import kstest
 
-from ratd.figures.style import ONE_COLUMN, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, empty, logarithmic, new_figure, styled
 from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY
 from ratd.validation.show.text import markdown_table, measured
+
+LIMIT = 1.36
+"""Greatest deviation of a cumulative distribution times sqrt(n) that 95 % of all samples of size n stay below."""
+UNIFORM = {
+    "squared impact parameter": ("#000000", "-"),
+    "direction, z": ("#0072B2", "-"),
+    "direction, azimuth": ("#0072B2", "--"),
+    "place, z": ("#D55E00", "-"),
+    "place, azimuth": ("#D55E00", "--"),
+}
+"""What should be uniform between 0 and 1, with its look."""
+
+
+def uniform_values(table):
+    """Of the arrivals: name of `UNIFORM` -> values, which should be uniform between 0 and 1."""
+    part = table[table["study"] == "arrivals"]
+    values = {"squared impact parameter": part["impact"]}
+    for name in ("direction", "place"):
+        x, y, z = (part[f"{name}_{axis}"] for axis in "xyz")
+        values |= {f"{name}, z": 0.5 + 0.5 * z, f"{name}, azimuth": 0.5 + np.arctan2(y, x) / (2.0 * np.pi)}
+    return {name: np.sort(column.to_numpy(float)) for name, column in values.items()}
 
 
 def mean(values):
@@ -17,7 +39,7 @@ def mean(values):
 
 @styled
 def draw(table):
-    """Mean porosity against the number of monomers, with the numbers of an independent generator.
+    """Porosity against the number of monomers, and cumulative distributions of arrivals less the uniform one.
 
     Parameters
     ----------
@@ -28,9 +50,9 @@ def draw(table):
     -------
     matplotlib.figure.Figure
     """
-    figure = new_figure(ONE_COLUMN, 0.85 * ONE_COLUMN, "aggregates of equal monomers (as grown, no drive)")
-    axes = figure.subplots()
-    for kind, part in table.groupby("type"):
+    figure = new_figure(TWO_COLUMNS, 0.45 * TWO_COLUMNS, "aggregates of equal monomers (as grown, no drive)")
+    axes, right = figure.subplots(1, 2)
+    for kind, part in table[table["study"] == "aggregates"].groupby("type"):
         colour = TYPE_COLOUR.get(kind, "black")
         numbers = sorted(set(part["n_monomers"]))
         points = [mean(part["porosity"][part["n_monomers"] == n]) for n in numbers]
@@ -45,15 +67,49 @@ def draw(table):
     logarithmic(axes.xaxis)
     axes.set_xlabel("number of monomers")
     axes.set_ylabel("porosity")
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    _draw_arrivals(right, uniform_values(table))
+    handles, labels = (a + b for a, b in zip(*(x.get_legend_handles_labels() for x in (axes, right)), strict=True))
+    figure.legend(handles, labels, loc="outside lower center", ncols=5)
     return figure
+
+
+def _draw_arrivals(axes, values):
+    """Empirical cumulative distributions less the uniform one."""
+    n = len(values["squared impact parameter"])
+    if not n:
+        empty(axes, "no arrivals")
+        return
+    for name, (colour, style) in UNIFORM.items():
+        axes.plot(values[name], (np.arange(n) + 0.5) / n - values[name], color=colour, ls=style, label=name)
+    for sign in (-1, 1):
+        axes.axhline(sign * LIMIT / np.sqrt(n), color=GREY, lw=0.8, ls=":", label="95 %" if sign > 0 else None)
+    axes.set_xlabel("value, 0 to 1")
+    axes.set_ylabel("cumulative share less the uniform one")
+
+
+def _tell_arrivals(values):
+    """Kolmogorov-Smirnov tests of the arrivals."""
+    rows = []
+    for name, own in values.items():
+        found = kstest(own, "uniform")
+        error = np.std(own, ddof=1) / np.sqrt(len(own))
+        rows.append([name, f"{len(own)}", measured(own.mean(), error), f"{found.statistic:.4f}", f"{found.pvalue:.2g}"])
+    return "\n\n".join(
+        [
+            "Single arrivals of a monomer on another: squared impact parameter over the greatest that hits, directions "
+            "of flight and places of touch as z (brought to 0–1) and azimuth (over one turn). Each should be uniform "
+            f"between 0 and 1, with mean 0.5. The greatest deviation of the cumulative distribution stays below "
+            f"{LIMIT:g}/sqrt(n) = {LIMIT / np.sqrt(len(own)):.4f} in 95 % of such samples; p is that of the "
+            "Kolmogorov-Smirnov test.",
+            markdown_table(["arrivals", "n", "mean", "greatest deviation", "p"], rows),
+        ]
+    )
 
 
 def tell(table):
     """The section of the report, Markdown."""
-    rows = []
-    for (kind, n), part in table.groupby(["type", "n_monomers"]):
+    rows, values = [], uniform_values(table)
+    for (kind, n), part in table[table["study"] == "aggregates"].groupby(["type", "n_monomers"]):
         p, q = EXPECTED_CONTACTS[kind]
         value, error = mean(part["porosity"])
         expected = EXPECTED_POROSITY.get((kind, int(n)), np.nan)
@@ -74,8 +130,8 @@ def tell(table):
             "## Growth",
             "Aggregates of equal monomers that migrate to the nearest place, as those of the independent generator. "
             "Means with standard errors over the aggregates. `off` is the difference of the porosities over both "
-            "errors. For isotropic growth the mean squares of the components of the contacts' directions are 1/3 each. "
-            "Directions and impact parameters of single arrivals are tested in `tests/test_growth.py`.",
+            "errors. For isotropic growth the mean squares of the components of the contacts' directions are 1/3 each.",
             markdown_table(header, rows),
+            *([_tell_arrivals(values)] if len(values["place, z"]) else []),
         ]
     )

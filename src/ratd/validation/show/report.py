@@ -12,8 +12,6 @@ netCDF. "±" is a standard error; where only a range is given, it is the range o
 """
 ELSEWHERE = """## Checked elsewhere
 
-- Forces and torques as derivatives of their potentials, conservation of momentum, and the same trajectory in the
-  inertial and the turning frame are tests: `tests/test_laws.py`, `tests/test_engine.py`.
 - The comparison with LAMMPS is not part of this target yet.
 """
 
