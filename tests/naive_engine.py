@@ -1,4 +1,4 @@
-"""The contact law, slow and obvious: one contact at a time, vectors as arrays, as in physics.md Sects. 3 and 4."""
+"""The contact law, slow and obvious: one contact at a time, vectors as arrays, as in docs/model.md."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Contact laws: table of physics.md Sect. 3, forces as derivatives of potentials, limits leave other modes alone."""
+"""Contact laws: table of docs/model.md, forces as derivatives of potentials, limits leave other modes alone."""
 
 import math
 
@@ -101,7 +101,7 @@ def test_step_of_eq_31():
     r = a / 2
     r0 = equilibrium_contact_radius(r, material.surface_energy, material.reduced_modulus)
     mass = 4 / 3 * math.pi * a**3 * material.density
-    # physics.md Sect. 3: 0.02 t_dis is 0.23 ps for a-C monomers of 10 nm
+    # 0.02 t_dis is 0.23 ps for a-C monomers of 10 nm
     assert 0.02 * jkr.dissipation_time(mass, r, r0, material.surface_energy) == pytest.approx(0.23e-12, rel=0.02)
 
 
@@ -115,7 +115,7 @@ def test_damping_ratios(name, ratios):
         r0 = equilibrium_contact_radius(r, material.surface_energy, material.reduced_modulus)
         c = jkr.damping_coefficient(r0, material.reduced_modulus, material.poisson_number, material.viscous_time)
         m_red = 2 / 3 * math.pi * a**3 * material.density
-        # the table of physics.md Sect. 3 is rounded to its last digit
+        # the table of docs/model.md is rounded to its last digit
         assert c / (2 * math.sqrt(1.2 * material.reduced_modulus * r0 * m_red)) == pytest.approx(ratio, rel=0.12)
 
 

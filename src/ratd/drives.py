@@ -1,7 +1,7 @@
 """What moves the aggregate: the law omega(t) and the equations of motion of a monomer in the turning frame.
 
 `prescribed` is the consistent model: an outer torque keeps the largest fragment turning at omega(t). `literal` is what
-the paper prints: fictitious forces only, no torque, no frame terms for the spins (physics.md Sects. 5 and 8).
+the paper prints: fictitious forces only, no torque, no frame terms for the spins (docs/model.md).
 """
 
 import math
@@ -296,7 +296,7 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
 
     Notes
     -----
-    Eqs. 19-21, 29, 30 with the terms that physics.md Sect. 5 adds: the centrifugal force m omega^2 (x, y, 0), the
+    Eqs. 19-21, 29, 30 with the terms that they lack (docs/model.md): the centrifugal force m omega^2 (x, y, 0), the
     Coriolis force -2 m omega x v, the Euler force -m (d omega/dt) x X, their counterparts for the spin
     (-I omega x w, -I d omega/dt), and for the largest fragment the body force m alpha x X with I alpha on the spin.
     alpha is d omega/dt, which cancels the Euler force, plus what takes out the angular momentum that the fragment

@@ -149,7 +149,7 @@ def append_contact(state, i, j, drift_time, at_rest):
 def contact_energies(state, k):
     """Potential energies [J] of contact k: normal, sliding, rolling, twisting.
 
-    Each is the potential whose derivative is the force or torque of physics.md Sects. 3 and 4:
+    Each is the potential whose derivative is the force or torque (docs/model.md):
     k_s zeta^2/2, k_r |n_i + n_j|^2/2, k_t phi^2/2.
     """
     contact = state.contact

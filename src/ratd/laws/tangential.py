@@ -20,14 +20,14 @@ TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
 def sliding_stiffness(equilibrium_contact_radius, shear_modulus, poisson_number):
     """k_s [N m-1] = 8 r0 G*, with G* = G/(2(2 - nu)) for two equal materials (Mindlin).
 
-    Printed with G* = G/(2 - 2 nu^2), 1.9 times stiffer (physics.md Sect. 4; Eq. 13).
+    Printed with G* = G/(2 - 2 nu^2), 1.9 times stiffer (docs/model.md; Eq. 13).
     """
     return 8.0 * equilibrium_contact_radius * shear_modulus / (2.0 * (2.0 - poisson_number))
 
 
 @jit
 def sliding_limit(equilibrium_contact_radius, poisson_number):
-    """zeta_c [m] = r0 (2 - nu)/(16 pi) (printed 1 - nu; physics.md Sect. 4)."""
+    """zeta_c [m] = r0 (2 - nu)/(16 pi) (printed 1 - nu; docs/model.md)."""
     return equilibrium_contact_radius * (2.0 - poisson_number) / (16.0 * math.pi)
 
 
@@ -39,7 +39,7 @@ def rolling_stiffness(pull_off_force, reduced_radius):
 
 @jit
 def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
-    """k_t [N m rad-1] = 16/3 G' r0^3 with G' = G/2 for equal materials (printed G*; physics.md Sect. 4, Eq. 17)."""
+    """k_t [N m rad-1] = 16/3 G' r0^3 with G' = G/2 for equal materials (printed G*; docs/model.md, Eq. 17)."""
     return 8.0 / 3.0 * shear_modulus * equilibrium_contact_radius**3
 
 
@@ -71,7 +71,7 @@ def sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz):
 
     Notes
     -----
-    physics.md Sect. 4. Eq. 14 is printed with signs that make it measure rolling.
+    docs/model.md. Eq. 14 is printed with signs that make it measure rolling.
     """
     wx = a_i * nix - a_j * njx
     wy = a_i * niy - a_j * njy

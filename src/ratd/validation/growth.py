@@ -38,7 +38,7 @@ EXPECTED_POROSITY = {
     ("BAM1", 32): 0.64, ("BAM1", 128): 0.72, ("BAM1", 256): 0.75, ("BAM1", 512): 0.75,
     ("BAM2", 32): 0.46, ("BAM2", 128): 0.55, ("BAM2", 256): 0.58, ("BAM2", 512): 0.61,
 }  # fmt: skip
-"""Porosities of an independent generator that migrates to the nearest place (physics.md Sect. 2), each +-0.01."""
+"""Porosities of an independent generator, which migrates to the nearest place, each +-0.01."""
 EXPECTED_CONTACTS = {"BA": (1, 1), "BAM1": (2, 3), "BAM2": (3, 6)}
 """N_con = p N - q without accidental contacts."""
 

@@ -2,7 +2,7 @@
 
 The printed equations leave an aggregate at rest in the inertial frame but for two things. An explicit Coriolis term
 feeds in energy at a rate ~ omega^2 dt, so that the aggregate comes apart at omega ~ (d omega/dt / dt)^(1/3)
-(physics.md Sect. 8). And the printed equation of the spins has no Euler term, which acts like an outer torque
+(docs/model.md). And the printed equation of the spins has no Euler term, which acts like an outer torque
 I_spin d omega/dt: the aggregate turns with omega I_spin/(I_orbit + I_spin), where I_spin is the sum of the monomers'
 own moments of inertia, and parts when that is the right threshold.
 """

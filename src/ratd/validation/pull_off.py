@@ -40,7 +40,7 @@ STEP_STUDY_RADIUS = 40e-9
 def force_controlled_omega(a_1, a_2, material):
     """omega [rad/s] at which the centrifugal force on a pair is the pull-off force.
 
-    m_red omega^2 (a_1 + a_2) = 3 pi gamma R (physics.md Sect. 5); for equal monomers sqrt(3 pi gamma/(2 m)).
+    m_red omega^2 (a_1 + a_2) = 3 pi gamma R (docs/model.md); for equal monomers sqrt(3 pi gamma/(2 m)).
     """
     return Pair.of(a_1, a_2, material).force_controlled_omega
 
