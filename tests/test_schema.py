@@ -8,7 +8,7 @@ from ratd import ensemble, io, marks, schema
 from ratd.errors import FileError
 from ratd.materials import MATERIALS
 
-SI = {"1", "m", "s", "kg", "kg m2", "kg m-3", "J", "J m-2", "N", "Pa", "rad s-1", "rad s-2"}
+SI = {"1", "m", "s", "kg", "kg m2", "kg m-3", "J", "J m-2", "N", "Pa", "rad", "rad s-1", "rad s-2"}
 EVERY_VARIABLE = [(kind, name) for kind, layout in schema.KINDS.items() for name in layout.variables]
 
 
