@@ -32,7 +32,7 @@ COLUMNS = {
     "turned": ("rad", "angle by which the frame has turned"),
     "distance": ("1", "greatest distance between the places of a monomer in both runs, over the mean radius"),
     "moved": ("1", "greatest distance of a monomer from its place at the start, inertial frame, over the mean radius"),
-    "dissipated": ("J", "energy dissipated so far, inertial frame"),
+    "dissipated_energy": ("J", "energy dissipated so far, inertial frame"),
 }
 KIND = table_kind("frames", "Free grains in two frames", COLUMNS)
 
@@ -155,7 +155,7 @@ def distances(grain, speed, omega, timestep_factor, samples):
                 turned=angle,
                 distance=np.linalg.norm(other - place, axis=1).max() / mean,
                 moved=np.linalg.norm(place - first, axis=1).max() / mean,
-                dissipated=dissipated(fixed).sum(),
+                dissipated_energy=dissipated(fixed).sum(),
             )
         )
     return rows
