@@ -64,7 +64,7 @@ def test_an_undamped_pair_from_first_touch_parts_where_its_vibration_reaches_the
     material, epsilon = MATERIALS["q-S"], 0.05
     adiabatic = vibrating_pair.adiabatic_omega(a_1, a_2, material)
     vibrating = vibrating_pair.vibrating_omega(a_1, a_2, material, epsilon)
-    omega = pull_off.parting_omega(a_1, a_2, material, epsilon=epsilon, timestep_factor=0.0025, damped=False)
+    omega = pull_off.parting_omega(a_1, a_2, material, epsilon=epsilon, timestep_factor=0.05, damped=False)
     assert vibrating == pytest.approx(adiabatic, rel=0.015)
     assert omega == pytest.approx(vibrating, rel=0.005)
     assert adiabatic < pull_off.eq35_omega(a_1, a_2, material)
@@ -215,8 +215,8 @@ def test_frames_agree():
     )  # fmt: skip
     table = pd.DataFrame(rows)
     assert table["moved"].max() > 0.5 and table["turned"].max() == pytest.approx(1.5, rel=0.01)
-    assert table["distance"].max() < 1e-5
-    assert show_frames.exponents(table).iloc[0] > 0.9
+    assert table["distance"].max() < 1e-6
+    assert show_frames.exponents(table).iloc[0] > 1.8
     works(show_frames, rows)
 
 

@@ -159,9 +159,7 @@ class TurningStep(NamedTuple):
     domega : float
         d omega/dt [rad/s2] that the velocities feel.
     alpha : float
-        d omega/dt [rad/s2] of the outer torque, 0 without it.
-    back : float
-        Rigid rotation [rad/s] that is taken out of the largest fragment.
+        Angular acceleration [rad/s2] that the outer torque gives the largest fragment, 0 without it.
     two_omega_dt, cos_v, sin_v : float
         Angle by which the Coriolis force turns a velocity, its cosine and sine.
     cos_w, sin_w : float
@@ -175,7 +173,6 @@ class TurningStep(NamedTuple):
     square: float
     domega: float
     alpha: float
-    back: float
     two_omega_dt: float
     cos_v: float
     sin_v: float
@@ -196,12 +193,10 @@ def turning_step(dt, omega, domega, unwind, drive):
         sin_w = math.sin(omega * dt)
         spin_euler = -domega * dt
     alpha = 0.0
-    back = 0.0
     if drive.torque:
-        alpha = domega
-        back = unwind
+        alpha = domega + unwind / dt
     return TurningStep(
-        omega * omega, domega, alpha, back,
+        omega * omega, domega, alpha,
         2.0 * omega * dt, math.cos(2.0 * omega * dt), math.sin(2.0 * omega * dt),
         cos_w, sin_w, spin_euler, drive.explicit_coriolis,
     )  # fmt: skip
@@ -229,7 +224,6 @@ def kick_and_drift_one(monomer, force, r, q, dt, turn):
     vx = monomer[r + VX]
     vy = monomer[r + VY]
     vz = monomer[r + VZ] + dt * force[q + FORCE_Z] * inv_mass
-    back = turn.back * driven
     if turn.explicit_coriolis:
         vx, vy = vx + dt * ax + turn.two_omega_dt * vy, vy + dt * ay - turn.two_omega_dt * vx
     else:
@@ -237,15 +231,15 @@ def kick_and_drift_one(monomer, force, r, q, dt, turn):
         py = vy + h * ay
         vx = turn.cos_v * px + turn.sin_v * py + h * ax
         vy = turn.cos_v * py - turn.sin_v * px + h * ay
-    vx -= back * y
-    vy += back * x
 
     inv_inertia = dt * monomer[r + INV_INERTIA]
-    ux = monomer[r + WX] + inv_inertia * force[q + TORQUE_X]
-    uy = monomer[r + WY] + inv_inertia * force[q + TORQUE_Y]
-    wx = turn.cos_w * ux + turn.sin_w * uy
-    wy = turn.cos_w * uy - turn.sin_w * ux
-    wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + turn.spin_euler + (turn.alpha * dt + turn.back) * driven
+    hx = 0.5 * inv_inertia * force[q + TORQUE_X]
+    hy = 0.5 * inv_inertia * force[q + TORQUE_Y]
+    ux = monomer[r + WX] + hx
+    uy = monomer[r + WY] + hy
+    wx = turn.cos_w * ux + turn.sin_w * uy + hx
+    wy = turn.cos_w * uy - turn.sin_w * ux + hy
+    wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + turn.spin_euler + turn.alpha * dt * driven
 
     mass = driven * monomer[r + MASS]
     own = driven * monomer[r + INERTIA]
@@ -281,8 +275,9 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
     omega, domega : float
         Angular velocity [rad/s] of the frame and its rate of change [rad/s2], at the time of the positions.
     unwind : float
-        Rigid rotation [rad/s] to be taken out of the largest fragment, minus its angular momentum about z in the
-        frame over its moment of inertia, after the last step.
+        Rigid rotation [rad/s] that the outer torque gives the largest fragment in this step, so that it has no angular
+        momentum about z in the frame after it: minus what it had after the last step and what this step puts in, over
+        its moment of inertia.
     drive : Drive
 
     Returns
@@ -299,10 +294,11 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
     Eqs. 19-21, 29, 30 with the terms that they lack (docs/model.md): the centrifugal force m omega^2 (x, y, 0), the
     Coriolis force -2 m omega x v, the Euler force -m (d omega/dt) x X, their counterparts for the spin
     (-I omega x w, -I d omega/dt), and for the largest fragment the body force m alpha x X with I alpha on the spin.
-    alpha is d omega/dt, which cancels the Euler force, plus what takes out the angular momentum that the fragment
-    had in the frame at the last step.
+    alpha is d omega/dt, which cancels the Euler force, plus what keeps the angular momentum in the frame zero.
 
-    The exact treatment turns the velocity by the angle -2 omega dt between two half kicks (Boris 1970).
+    The exact treatment turns the velocity by the angle -2 omega dt between two half kicks (Boris 1970), and the spin by
+    -omega dt likewise. The body force has to be part of these kicks: if the torque followed a step later, or after the
+    turn, vibrations along the radius would lose energy at a rate ~ omega^2 dt.
     """
     turn = turning_step(dt, omega, domega, unwind, drive)
     angular_momentum = 0.0
@@ -316,3 +312,26 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
         inertia += inertia_k
         fastest = max(fastest, speed)
     return angular_momentum, inertia, math.sqrt(fastest)
+
+
+@jit
+def turn_to_take_out(excess, last_excess, last_unwind):
+    """Rigid rotation [rad/s] that the outer torque has to give the largest fragment in the step to come.
+
+    Parameters
+    ----------
+    excess, last_excess : float
+        Angular momentum of the fragment in the frame over its moment of inertia [rad/s], after the last step and the
+        one before; the latter is NaN when the fragment was another one.
+    last_unwind : float
+        What the torque gave in the last step.
+
+    Returns
+    -------
+    float
+        Minus what has stayed, and minus what the step will put in: as much as the last one did.
+    """
+    put_in = 0.0
+    if last_excess == last_excess:
+        put_in = excess - last_excess - last_unwind
+    return -excess - put_in

@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 from ratd._accelerate import jit
-from ratd.drives import angular_velocity, kick_and_drift
+from ratd.drives import angular_velocity, kick_and_drift, turn_to_take_out
 from ratd.engine.contacts import append_contact, contact_start, remove_contact, update_contact_rates
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.fragments import drop_departed, find_fragments
 from ratd.engine.layout import (
-    COMPRESSION, CONTACTS, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW,
+    COMPRESSION, CONTACTS, DT, DT_DRIFT, EXCESS, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW,
     SEARCHES, STEPS, STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, X, Y, Z,
 )  # fmt: skip
 from ratd.engine.measure import greatest_residual, total_stress
@@ -157,7 +157,9 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         if changed:
             # Some contact was made or broken.
             changed = False
-            scalar[UNWIND] = 0.0  # it was that of the old fragment
+            # They were those of the old fragment; nothing can be foretold of the new one before its first step.
+            scalar[UNWIND] = 0.0
+            scalar[EXCESS] = math.nan
             update_contact_rates(state, timestep_factor, implicit_damping)
             fragments = find_fragments(state)
             near_reference, radius = _positions(state)
@@ -191,7 +193,9 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
         if drive.torque:
             # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
             scalar[TORQUE_WORK] += (domega * dt + scalar[UNWIND]) * (inertia * omega + momentum)
-            scalar[UNWIND] = -momentum / inertia
+            excess = momentum / inertia
+            scalar[UNWIND] = turn_to_take_out(excess, scalar[EXCESS], scalar[UNWIND])
+            scalar[EXCESS] = excess
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
         omega, domega = angular_velocity(drive, scalar[TIME])

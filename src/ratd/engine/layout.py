@@ -58,13 +58,13 @@ SCALARS = (
     "time omega "  # [s], [rad/s]
     "dt "  # of the step to come [s]
     "dt_drift "  # with which the positions were last moved [s]
-    "unwind "  # turns the largest fragment back to angular momentum zero [rad/s]
+    "unwind excess "  # to turn the largest fragment back by, and by how much it turned after the last step [rad/s]
     "torque_work "  # [J]
     "lost_slide lost_roll lost_twist lost_damp lost_contact "  # dissipated by contacts that are gone [J]
     "stress_sum stress_samples "  # of the recording interval
 ).split()
 (
-    TIME, OMEGA, DT, DT_DRIFT, UNWIND, TORQUE_WORK,
+    TIME, OMEGA, DT, DT_DRIFT, UNWIND, EXCESS, TORQUE_WORK,
     LOST_SLIDE, LOST_ROLL, LOST_TWIST, LOST_DAMP, LOST_CONTACT, STRESS_SUM, STRESS_SAMPLES,
 ) = range(len(SCALARS))  # fmt: skip
 
