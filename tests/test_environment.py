@@ -7,6 +7,8 @@ from pathlib import Path
 
 import yaml
 
+from ratd.validation import peer_lammps
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -27,6 +29,15 @@ def test_every_line_is_pinned_and_the_project_is_included():
 def test_what_the_project_asks_for_is_pinned():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert {re.match(r"[\w.-]+", name).group() for name in project["dependencies"]} <= set(pinned())
+
+
+def test_lammps_is_pinned_and_named_where_it_is_missing():
+    text = (ROOT / "environment-lammps.txt").read_text()
+    pins = dict(line.split("==") for line in text.splitlines() if not line.startswith("#"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert set(project["optional-dependencies"]["lammps"]) == set(pins)
+    assert not set(pins) & set(pinned())
+    assert peer_lammps.INSTALL in text
 
 
 def test_what_is_installed_is_what_is_pinned():

@@ -303,8 +303,10 @@ def test_numbers_in_words():
 def test_plan_names_every_piece_once():
     plan = Plan(CONFIG)
     for extent in EXTENTS:
-        checks = {"convergence", "pull_off", "literal", "theory", "growth", "energy", "energy_step", "frames", "forces"}
-        assert set(plan.pieces[extent]) == checks
+        assert set(plan.pieces[extent]) == {
+            "convergence", "pull_off", "literal", "theory", "growth", "energy", "energy_step", "frames", "forces",
+            "lammps",
+        }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and f"validation_{check}" in schema.KINDS
     full = plan.pieces["full"]["convergence"]

@@ -35,10 +35,7 @@ for check in CHECKS.pieces["full"]:
 
 rule validation_show:
     input:
-        lambda w: [
-            f"{CHECKS.results}/{w.extent}/{w.check}/{piece}.nc"
-            for piece in CHECKS.pieces[w.extent][w.check]
-        ],
+        lambda w: CHECKS.files(w.extent, w.check),
     output:
         pdf=f"{CHECKS.results}/{{extent}}/{{check}}.pdf",
         png=f"{CHECKS.results}/{{extent}}/{{check}}.png",

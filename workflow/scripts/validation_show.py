@@ -12,6 +12,7 @@ from ratd.validation.show import (  # noqa: F401  (source hash)
     forces,
     frames,
     growth,
+    lammps,
     literal,
     pull_off,
     theory,

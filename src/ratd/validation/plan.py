@@ -5,6 +5,7 @@ from itertools import product
 from ratd.config import read_yaml
 from ratd.errors import InputError
 from ratd.units import NM
+from ratd.validation import peer_lammps
 
 EXTENTS = ("full", "quick")
 
@@ -40,6 +41,18 @@ class Plan:
         except KeyError as error:
             raise InputError(f"{path}: the key {error} is missing or not known; see config/validation.yaml") from None
 
+    def files(self, extent, check):
+        """Files of all pieces of a check.
+
+        Raises
+        ------
+        InputError
+            If the program that the check is against is missing: it is asked for before any job starts.
+        """
+        if check == "lammps":
+            peer_lammps.load()
+        return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
+
     def _pieces(self, check, own):
         return {
             "convergence": self._convergence,
@@ -51,6 +64,7 @@ class Plan:
             "energy_step": self._free_grain,
             "frames": self._free_grain,
             "forces": self._forces,
+            "lammps": self._lammps,
         }[check](own)
 
     def _convergence(self, own):
@@ -111,3 +125,16 @@ class Plan:
         shared = {key: value for key, value in own.items() if key not in ("materials", "size_nm")}
         shared["a_eff"] = own["size_nm"] * NM
         return {material: shared | {"material": material} for material in own["materials"]}
+
+    def _lammps(self, own):
+        pairs = [[a * NM for a in pair] for pair in own["pairs_nm"]]
+        forces = {"study": "force", "points": own["points"], "pairs": pairs}
+        rotation = {"study": "rotation"} | {
+            key: own[key] for key in ("material", "timestep_factor", "step", "rotations")
+        }
+        return {f"force_{material}": forces | {"material": material} for material in own["materials"]} | {
+            f"{grain['type']}_{grain['size_nm']}nm_{seed}": rotation
+            | {"type": grain["type"], "a_eff": grain["size_nm"] * NM, "seed": seed}
+            for grain in own["grains"]
+            for seed in range(grain["seeds"])
+        }

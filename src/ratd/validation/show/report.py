@@ -1,4 +1,4 @@
-"""The report: introduction, sections of the checks, what is checked elsewhere."""
+"""The report: introduction, then the sections of the checks."""
 
 INTRODUCTION = """# Validation
 
@@ -9,10 +9,6 @@ written by
 
 Nothing in it is typed by hand. Tables of all cases, from which the figures are drawn, lie in `{results}/{extent}` as
 netCDF. "±" is a standard error; where only a range is given, it is the range over all cases.
-"""
-ELSEWHERE = """## Checked elsewhere
-
-- The comparison with LAMMPS is not part of this target yet.
 """
 
 
@@ -31,4 +27,4 @@ def report(sections, *, extent, results, command):
     str
     """
     head = INTRODUCTION.format(extent=extent, results=results, command=command)
-    return "\n".join([head, *sections, ELSEWHERE])
+    return "\n".join([head, *sections])

