@@ -126,9 +126,22 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
             come_to_rest(state)
             kinetic = 0.0
     else:
-        raise RuntimeError(f"the grain does not come to rest: net force {residual:.2e} N, allowed {goal:.2e} N")
+        raise RuntimeError(f"{not_at_rest(goal)}; it is {residual:.2e} N")
     settle(state, timestep_factor)
     return state
+
+
+def not_at_rest(goal):
+    """What to say of a grain whose relaxation does not end."""
+    return f"the grain does not come to rest: the net force is not to exceed {goal:.2e} N on any monomer"
+
+
+def not_finite(state):
+    """What to say of a run with a velocity that is no number."""
+    return (
+        f"the integration failed at step {state.counter[STEPS]}, omega = {state.scalar[OMEGA]:.3e} rad/s: "
+        "a velocity is no finite number; try a smaller timestep_factor or a slower spin-up"
+    )
 
 
 def residual_goal(state):
@@ -379,10 +392,7 @@ def _advance(state, *arguments):
     while True:
         code = advance(state, *arguments)
         if code == NOT_FINITE:
-            raise RuntimeError(
-                f"the integration failed at step {state.counter[STEPS]}, omega = {state.scalar[OMEGA]:.3e} rad/s: "
-                "a velocity is no finite number; try a smaller timestep_factor or a slower spin-up"
-            )
+            raise RuntimeError(not_finite(state))
         if code != FULL:
             return state, code
         state = with_room(state, 2 * len(state.pair_i))

@@ -85,7 +85,7 @@ def _near_pairs(state, far, reach):
     for p in range(far.shape[0]):
         i = far[p, 0]
         j = far[p, 1]
-        if _gap(state, i, j) > reach:
+        if gap(state, i, j) > reach:
             continue
         touching = False
         for q in range(begin[i], begin[i + 1]):
@@ -98,7 +98,7 @@ def _near_pairs(state, far, reach):
 
 
 @jit(forceinline=True)
-def _gap(state, i, j):
+def gap(state, i, j):
     """Distance between two surfaces [m], negative when they overlap."""
     ri = np.uint64(i) * _ROW
     rj = np.uint64(j) * _ROW
@@ -210,7 +210,7 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
                     remove_contact(state, k)
             changed = True
         for p in range(near.shape[0]):
-            if _gap(state, near[p, 0], near[p, 1]) <= 0.0:
+            if gap(state, near[p, 0], near[p, 1]) <= 0.0:
                 append_contact(state, near[p, 0], near[p, 1], dt, False)
                 changed = True
         travel += fastest * dt

@@ -1,0 +1,121 @@
+"""Sums, greatest values and prefix sums over a thread block, in an order that depends on nothing but its size.
+
+All threads of the block call these functions together and get the same result. `buffer` is shared memory with a
+number for each thread.
+"""
+
+from ratd.cuda.device import SIMULATED, cuda, device_function
+
+WARP = 32
+
+if SIMULATED:
+
+    @device_function
+    def warp_barrier():
+        """Threads of a warp wait for each other (the simulation knows only the barrier of the whole block)."""
+        cuda.syncthreads()
+
+else:
+
+    @device_function
+    def warp_barrier():
+        """Threads of a warp wait for each other."""
+        cuda.syncwarp()
+
+
+@device_function
+def greater(a, b):
+    """The greater of two numbers; NaN if one of them is."""
+    return a if a > b or a != a else b
+
+
+@device_function
+def tree(buffer, first, maximum):
+    """Sum, or greatest value, of each warp's numbers in `buffer` from `first` on, left at its first thread's place."""
+    thread = cuda.threadIdx.x
+    lane = thread % WARP
+    stride = WARP // 2
+    warp_barrier()
+    while stride > 0:
+        if lane < stride and thread + stride < cuda.blockDim.x:
+            mine = buffer[first + thread]
+            other = buffer[first + thread + stride]
+            if maximum:
+                buffer[first + thread] = greater(mine, other)
+            else:
+                buffer[first + thread] = mine + other
+        warp_barrier()
+        stride //= 2
+
+
+@device_function
+def over_warps(buffer, first, maximum):
+    """Sum, or greatest value, of what `tree` has left; a barrier of the block stands between the two."""
+    total = buffer[first]
+    for place in range(WARP, cuda.blockDim.x, WARP):
+        other = buffer[first + place]
+        if maximum:
+            total = greater(total, other)
+        else:
+            total += other
+    return total
+
+
+@device_function
+def block_sum(value, buffer):
+    """Sum of one number of each thread."""
+    cuda.syncthreads()  # what was in the buffer has been read
+    buffer[cuda.threadIdx.x] = value
+    tree(buffer, 0, False)
+    cuda.syncthreads()
+    return over_warps(buffer, 0, False)
+
+
+@device_function
+def block_max(value, buffer):
+    """Greatest of one number of each thread; NaN if one of them is."""
+    cuda.syncthreads()
+    buffer[cuda.threadIdx.x] = value
+    tree(buffer, 0, True)
+    cuda.syncthreads()
+    return over_warps(buffer, 0, True)
+
+
+@device_function
+def prefix_sum(values, n, counts):
+    """Replace values[k], k < n, by the sum of those before it.
+
+    Parameters
+    ----------
+    values : integer array
+    n : int
+    counts : integer array
+        Shared memory with a number for each thread.
+
+    Returns
+    -------
+    int
+        The sum of all.
+    """
+    thread = cuda.threadIdx.x
+    chunk = (n + cuda.blockDim.x - 1) // cuda.blockDim.x
+    first = min(thread * chunk, n)
+    last = min(first + chunk, n)
+    cuda.syncthreads()
+    total = 0
+    for k in range(first, last):
+        total += values[k]
+    counts[thread] = total
+    cuda.syncthreads()
+    before = 0
+    total = 0
+    for place in range(cuda.blockDim.x):
+        if place == thread:
+            before = total
+        total += counts[place]
+    for k in range(first, last):
+        value = values[k]
+        values[k] = before
+        before += value
+    cuda.syncthreads()
+    return total

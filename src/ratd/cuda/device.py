@@ -1,0 +1,98 @@
+"""What is compiled for the device and how, and whether there is one.
+
+This is the only module of the package that imports numba's CUDA target. Without a device, numba's simulation
+(environment variable NUMBA_ENABLE_CUDASIM=1, set before numba is imported) runs the kernels in Python threads: slow,
+for tests. The functions of the CPU engine that a kernel calls are compiled for the processor then.
+"""
+
+import numba
+import numpy as np
+from numba import cuda as numba_cuda
+
+from ratd.errors import InputError
+
+__all__ = [
+    "MAX_THREADS", "MIN_THREADS", "REGISTERS", "SIMULATED", "cuda", "device_function", "fetch", "kernel", "require",
+    "send", "upload",
+]  # fmt: skip
+
+SIMULATED = bool(numba.config.ENABLE_CUDASIM)
+
+if SIMULATED:
+    import sys
+
+    from numba.cuda.simulator import kernel as simulation
+
+    # Threads of the simulation wait for each other all the time; by default each turn lasts 5 ms.
+    sys.setswitchinterval(1e-5)
+
+    class _Cuda:
+        """`numba.cuda` as the thread at work sees it.
+
+        The simulation puts the thread's own numbers in the place of the name `cuda` of a module while one of its
+        functions runs, which goes wrong where several threads are inside several modules.
+        """
+
+        def __getattr__(self, name):
+            inside = simulation._kernel_context is not None
+            return getattr(simulation._get_kernel_context() if inside else numba_cuda, name)
+
+    cuda = _Cuda()
+else:
+    cuda = numba_cuda
+
+MIN_THREADS, MAX_THREADS = (4, 4) if SIMULATED else (32, 512)
+"""Threads of a block. The simulation makes each a Python thread, so it gets few."""
+REGISTERS = 128
+"""Registers of a thread: 512 threads then fill the register file of one multiprocessor."""
+
+
+def device_function(function):
+    """A function that only kernels call."""
+    return function if SIMULATED else numba_cuda.jit(device=True)(function)
+
+
+def kernel(function):
+    """A kernel."""
+    return numba_cuda.jit(function) if SIMULATED else numba_cuda.jit(max_registers=REGISTERS)(function)
+
+
+def require():
+    """Raise one clear sentence unless there is a device that kernels can run on.
+
+    Raises
+    ------
+    InputError
+    """
+    if SIMULATED:
+        return
+    if getattr(numba_cuda, "implementation", "Built-in") != "NVIDIA":
+        raise InputError("engine is cuda, but the package numba-cuda is missing: install environment-gpu.txt.")
+    try:
+        usable = numba_cuda.is_available() and len(numba_cuda.gpus) > 0
+        reason = "no GPU, or no driver for it, was found"
+    except Exception as error:  # whatever the driver says, the user needs one sentence
+        usable, reason = False, str(error).strip().splitlines()[-1]
+    if not usable:
+        raise InputError(f"engine is cuda, but {reason}; a GPU of NVIDIA with its driver is needed, or engine: cpu.")
+
+
+def upload(array):
+    """A copy of an array on the device."""
+    return array.copy() if SIMULATED else numba_cuda.to_device(np.ascontiguousarray(array))
+
+
+def fetch(target, source, part=slice(None)):
+    """Copy one part (along the first axis) of an array on the device into the same part of one of the host."""
+    if SIMULATED:
+        target[part] = source[part]
+    else:
+        source[part].copy_to_host(target[part])
+
+
+def send(target, source, part=slice(None)):
+    """Copy one part (along the first axis) of an array of the host into the same part of one on the device."""
+    if SIMULATED:
+        target[part] = source[part]
+    else:
+        target[part].copy_to_device(source[part])
