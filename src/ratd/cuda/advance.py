@@ -3,8 +3,22 @@
 import numpy as np
 
 from ratd.cuda.arena import (
-    ACCELERATION, CODE, EPSILON, EXPLICIT_CORIOLIS, FEWEST, GOALS, KINETIC, LAW, OMEGA_1, RELAXING, RESIDUAL, ROWS,
-    SEGMENT_END, SPIN_TERMS, STEPS_GOAL, TORQUE,
+    ACCELERATION,
+    CODE,
+    EPSILON,
+    EXPLICIT_CORIOLIS,
+    FEWEST,
+    GOALS,
+    KINETIC,
+    LAW,
+    OMEGA_1,
+    RELAXING,
+    RESIDUAL,
+    ROWS,
+    SEGMENT_END,
+    SPIN_TERMS,
+    STEPS_GOAL,
+    TORQUE,
 )  # fmt: skip
 from ratd.cuda.block import block_max, block_sum
 from ratd.cuda.body import body_of
@@ -36,8 +50,24 @@ from ratd.engine.advance import (
 )
 from ratd.engine.contacts import append_contact, contact_start, remove_contact
 from ratd.engine.layout import (
-    COMPRESSION, CONTACTS, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW, SEARCHES, STEPS,
-    STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, VX, WX,
+    COMPRESSION,
+    CONTACTS,
+    DT,
+    DT_DRIFT,
+    LARGEST_CONTACTS,
+    MONOMERS,
+    OMEGA,
+    RADIUS,
+    ROW,
+    SEARCHES,
+    STEPS,
+    STRESS_SAMPLES,
+    STRESS_SUM,
+    TIME,
+    TORQUE_WORK,
+    UNWIND,
+    VX,
+    WX,
 )  # fmt: skip
 from ratd.laws.jkr import COMPRESSION_END
 from ratd.spinup import RELAXATION_STEPS
@@ -46,6 +76,7 @@ RESTED, PAUSED = 5, 6
 """Further reasons why a grain stopped, next to those of `ratd.engine.advance`: relaxed; end of its segment."""
 
 _ROW = np.uint64(ROW)
+_BUFFER = 3 * MAX_THREADS
 
 
 @device_function
@@ -129,7 +160,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
         f of dt = f min(t_dis, t_vel).
     implicit_damping : bool
     """
-    buffer = cuda.shared.array(3 * MAX_THREADS, np.float64)
+    buffer = cuda.shared.array(_BUFFER, np.float64)
     counts = cuda.shared.array(MAX_THREADS, np.int64)
     grain = active[cuda.blockIdx.x]
     thread = cuda.threadIdx.x
@@ -242,9 +273,11 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             break
 
         touched = 0
-        for p in range(thread, pairs, cuda.blockDim.x):
+        p = thread
+        while p < pairs:
             if gap(state, body.near[p, 0], body.near[p, 1]) <= 0.0:
                 touched = 1
+            p += cuda.blockDim.x
         if pairs > 0:
             touched = cuda.syncthreads_or(touched)
         if ended or touched:

@@ -52,8 +52,10 @@ class Arena(NamedTuple):
         Where the monomers were when the near and the far list of pairs were made.
     piece : float64
         A number for each monomer or fragment.
-    begin, link : int32
-        Contacts of each monomer: link[begin[k] : begin[k + 1]] = 2 contact + side, the side being 0 for i.
+    begin : int64
+    link : uint64
+        Contacts of each monomer, link[begin[k] : begin[k + 1]]: twice the place where the results of the contact
+        begin, and 1 more where the monomer is its j.
     far, near : (pairs, 2) int32
         Pairs that may come into contact.
     label, order : int64
@@ -140,8 +142,8 @@ class Batch:
             result=np.zeros(slots * RESULTS),
             reference=np.zeros((monomers, 6)),
             piece=np.zeros(monomers),
-            begin=np.zeros(monomers, dtype=np.int32),
-            link=np.zeros(2 * slots, dtype=np.int32),
+            begin=np.zeros(monomers, dtype=np.int64),
+            link=np.zeros(2 * slots, dtype=np.uint64),
             far=np.zeros((FAR_PER_SLOT * slots, 2), dtype=np.int32),
             near=np.zeros((FAR_PER_SLOT * slots, 2), dtype=np.int32),
             label=np.zeros(monomers, dtype=np.int64),

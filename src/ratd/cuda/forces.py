@@ -4,31 +4,45 @@ import math
 
 import numpy as np
 
-from ratd.cuda.arena import RESULTS
 from ratd.cuda.block import block_max, greater, over_warps, tree
 from ratd.cuda.device import cuda, device_function
+from ratd.cuda.lists import link_to
 from ratd.drives import kick_and_drift_one
 from ratd.engine.forces import SCRATCH_SIZE, forces_between
 from ratd.engine.layout import (
-    CONTACTS, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, FX, FY, FZ, LANES, MONOMERS, RADIUS, ROW, TIX, TIY, TIZ, TJX, TJY,
-    TJZ, TORQUE_X, TORQUE_Y, TORQUE_Z,
+    CONTACTS,
+    FORCE_ROW,
+    FORCE_X,
+    FORCE_Y,
+    FORCE_Z,
+    FX,
+    FY,
+    FZ,
+    LANES,
+    MONOMERS,
+    RADIUS,
+    ROW,
+    TIX,
+    TIY,
+    TIZ,
+    TJX,
+    TJY,
+    TJZ,
+    TORQUE_X,
+    TORQUE_Y,
+    TORQUE_Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)
 _AXIS = np.uint64(LANES)
 _TORQUE_I = np.uint64(3 * LANES)
 _TORQUE_J = np.uint64(6 * LANES)
-
-
-@device_function
-def result_start(c):
-    """Where the results of contact c begin: number f stands f * LANES further on."""
-    return np.uint64((c // LANES) * (RESULTS * LANES) + c % LANES)
+_ONE = np.uint64(1)
 
 
 @device_function
 def contact_pass(body, dt_drift, dt):
-    """Advance all contacts, and leave their forces and torques in `result`.
+    """Advance all contacts, and leave their forces and torques in `result`, one LANES after the other.
 
     Returns
     -------
@@ -38,12 +52,13 @@ def contact_pass(body, dt_drift, dt):
     state = body.state
     result = body.result
     scratch = cuda.local.array(SCRATCH_SIZE, np.float64)
+    contacts = state.counter[CONTACTS]
     ended = 0
-    for c in range(cuda.threadIdx.x, state.counter[CONTACTS], cuda.blockDim.x):
-        ended += forces_between(
-            state.monomer, state.contact, state.pair_i, state.pair_j, scratch, c, 1, dt_drift, dt
-        )
-        at = result_start(c)
+    # No range with a step, here and below: the number of its turns takes a division.
+    c = cuda.threadIdx.x
+    while c < contacts:
+        ended += forces_between(state.monomer, state.contact, state.pair_i, state.pair_j, scratch, c, 1, dt_drift, dt)
+        at = link_to(c, 0) >> _ONE
         result[at] = scratch[FX]
         result[at + _AXIS] = scratch[FY]
         result[at + _AXIS + _AXIS] = scratch[FZ]
@@ -55,12 +70,13 @@ def contact_pass(body, dt_drift, dt):
         result[at] = scratch[TJX]
         result[at + _AXIS] = scratch[TJY]
         result[at + _AXIS + _AXIS] = scratch[TJZ]
+        c += cuda.blockDim.x
     return ended
 
 
 @device_function
 def sum_forces(body, k, force):
-    """Force and torque on monomer k, into `force` (FORCE_ROW numbers), summed in the order of the contacts."""
+    """Force and torque on monomer k (uint64), into `force` (FORCE_ROW numbers), summed in the order of the contacts."""
     result = body.result
     fx = 0.0
     fy = 0.0
@@ -68,12 +84,13 @@ def sum_forces(body, k, force):
     tx = 0.0
     ty = 0.0
     tz = 0.0
-    for p in range(body.begin[k], body.begin[k + 1]):
-        link = body.link[p]
-        at = result_start(link // 2)
+    p = np.uint64(body.begin[k])
+    last = np.uint64(body.begin[k + _ONE])
+    while p < last:
+        at = body.link[p] >> _ONE
         sign = 1.0
         torque = at + _TORQUE_I
-        if link % 2 == 1:
+        if body.link[p] & _ONE:
             sign = -1.0
             torque = at + _TORQUE_J
         fx += sign * result[at]
@@ -82,6 +99,7 @@ def sum_forces(body, k, force):
         tx += result[torque]
         ty += result[torque + _AXIS]
         tz += result[torque + _AXIS + _AXIS]
+        p += _ONE
     force[FORCE_X] = fx
     force[FORCE_Y] = fy
     force[FORCE_Z] = fz
@@ -114,14 +132,15 @@ def monomer_pass(body, dt, turn, buffer):
     angular_momentum = 0.0
     inertia = 0.0
     fastest = 0.0
-    for k in range(cuda.threadIdx.x, state.counter[MONOMERS], threads):
+    n = np.uint64(state.counter[MONOMERS])
+    k = np.uint64(cuda.threadIdx.x)
+    while k < n:
         sum_forces(body, k, force)
-        momentum_k, inertia_k, speed = kick_and_drift_one(
-            state.monomer, force, np.uint64(k) * _ROW, np.uint64(0), dt, turn
-        )
+        momentum_k, inertia_k, speed = kick_and_drift_one(state.monomer, force, k * _ROW, np.uint64(0), dt, turn)
         angular_momentum += momentum_k
         inertia += inertia_k
         fastest = greater(fastest, speed)
+        k += np.uint64(threads)
     buffer[cuda.threadIdx.x] = angular_momentum
     buffer[threads + cuda.threadIdx.x] = inertia
     buffer[2 * threads + cuda.threadIdx.x] = fastest
@@ -144,7 +163,7 @@ def residual_force(body, buffer):
     force = cuda.local.array(FORCE_ROW, np.float64)
     greatest = 0.0
     for k in range(cuda.threadIdx.x, state.counter[MONOMERS], cuda.blockDim.x):
-        sum_forces(body, k, force)
+        sum_forces(body, np.uint64(k), force)
         a = state.monomer[np.uint64(k) * _ROW + RADIUS]
         f = force[FORCE_X] ** 2 + force[FORCE_Y] ** 2 + force[FORCE_Z] ** 2
         t = force[TORQUE_X] ** 2 + force[TORQUE_Y] ** 2 + force[TORQUE_Z] ** 2

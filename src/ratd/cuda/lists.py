@@ -4,17 +4,41 @@ import math
 
 import numpy as np
 
+from ratd.cuda.arena import RESULTS
 from ratd.cuda.block import block_max, prefix_sum
 from ratd.cuda.device import cuda, device_function
 from ratd.engine.advance import gap
 from ratd.engine.contacts import contact_start, contact_timestep
 from ratd.engine.layout import (
-    CONTACTS, DAMPING, DAMPING_RATE, DT, INV_MASS, MONOMERS, ROW, X, Y, Z,
+    CONTACTS,
+    DAMPING,
+    DAMPING_RATE,
+    DT,
+    INV_MASS,
+    LANES,
+    MONOMERS,
+    ROW,
+    X,
+    Y,
+    Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)
 NEAR_REFERENCE, FAR_REFERENCE = 0, 3
 """Columns of `reference`."""
+
+
+@device_function
+def link_to(c, side):
+    """Entry of `link` for contact c and its monomer i (side 0) or j (side 1)."""
+    return np.uint64(2 * ((c // LANES) * (RESULTS * LANES) + c % LANES) + side)
+
+
+@device_function
+def contact_of(link):
+    """Number of the contact of an entry of `link`."""
+    place = np.int64(link) // 2
+    return place // (RESULTS * LANES) * LANES + place % (RESULTS * LANES)
 
 
 @device_function
@@ -28,16 +52,16 @@ def link_contacts(body, counts):
         body.begin[k] = 0
     cuda.syncthreads()
     for c in range(thread, state.counter[CONTACTS], cuda.blockDim.x):
-        cuda.atomic.add(body.begin, np.int64(state.pair_i[c]), np.int32(1))
-        cuda.atomic.add(body.begin, np.int64(state.pair_j[c]), np.int32(1))
+        cuda.atomic.add(body.begin, np.int64(state.pair_i[c]), np.int64(1))
+        cuda.atomic.add(body.begin, np.int64(state.pair_j[c]), np.int64(1))
     prefix_sum(body.begin, n + 1, counts)
     # Filled in any order, by cursors that move from begin[k] to begin[k + 1], then sorted.
     for k in range(thread, n, cuda.blockDim.x):
         body.order[k] = body.begin[k]
     cuda.syncthreads()
     for c in range(thread, state.counter[CONTACTS], cuda.blockDim.x):
-        body.link[cuda.atomic.add(body.order, np.int64(state.pair_i[c]), np.int64(1))] = 2 * c
-        body.link[cuda.atomic.add(body.order, np.int64(state.pair_j[c]), np.int64(1))] = 2 * c + 1
+        body.link[cuda.atomic.add(body.order, np.int64(state.pair_i[c]), np.int64(1))] = link_to(c, 0)
+        body.link[cuda.atomic.add(body.order, np.int64(state.pair_j[c]), np.int64(1))] = link_to(c, 1)
     cuda.syncthreads()
     for k in range(thread, n, cuda.blockDim.x):
         first = body.begin[k]
@@ -60,7 +84,7 @@ def update_rates(body, timestep_factor, implicit_damping, buffer):
     for k in range(thread, state.counter[MONOMERS], cuda.blockDim.x):
         total = 0.0
         for p in range(body.begin[k], body.begin[k + 1]):
-            total += state.contact[contact_start(body.link[p] // 2) + DAMPING]
+            total += state.contact[contact_start(contact_of(body.link[p])) + DAMPING]
         body.piece[k] = total
     step = np.inf
     for c in range(thread, contacts, cuda.blockDim.x):
@@ -71,7 +95,9 @@ def update_rates(body, timestep_factor, implicit_damping, buffer):
         j = state.pair_j[c]
         rate = 0.0
         if implicit_damping:
-            rate = body.piece[i] * state.monomer[i * _ROW + INV_MASS] + body.piece[j] * state.monomer[j * _ROW + INV_MASS]
+            rate = (
+                body.piece[i] * state.monomer[i * _ROW + INV_MASS] + body.piece[j] * state.monomer[j * _ROW + INV_MASS]
+            )
         state.contact[contact_start(c) + DAMPING_RATE] = rate
     if contacts > 0 and thread == 0:
         state.scalar[DT] = timestep_factor * step
@@ -144,9 +170,8 @@ def may_touch(body, p, reach):
     if gap(state, i, j) > reach:
         return False
     for q in range(body.begin[i], body.begin[i + 1]):
-        c = body.link[q] // 2
-        other = state.pair_j[c] if body.link[q] % 2 == 0 else state.pair_i[c]
-        if np.int64(other) == j:
+        c = contact_of(body.link[q])
+        if np.int64(state.pair_i[c]) == j or np.int64(state.pair_j[c]) == j:
             return False
     return True
 

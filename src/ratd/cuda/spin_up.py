@@ -6,17 +6,41 @@ import numpy as np
 
 from ratd.cuda.advance import PAUSED, RESTED, advance_grains
 from ratd.cuda.arena import (
-    ACCELERATION, CODE, EPSILON, EXPLICIT_CORIOLIS, FEWEST, GOALS, LAW, OMEGA_1, RELAXING, RESIDUAL, ROW_COLUMNS, ROWS,
-    SEGMENT_END, SPIN_TERMS, STEPS_GOAL, TORQUE, Batch,
+    ACCELERATION,
+    CODE,
+    EPSILON,
+    EXPLICIT_CORIOLIS,
+    FEWEST,
+    GOALS,
+    LAW,
+    OMEGA_1,
+    RELAXING,
+    RESIDUAL,
+    ROW_COLUMNS,
+    ROWS,
+    SEGMENT_END,
+    SPIN_TERMS,
+    STEPS_GOAL,
+    TORQUE,
+    Batch,
 )  # fmt: skip
 from ratd.cuda.device import MAX_THREADS, MIN_THREADS, SIMULATED, cuda, require, upload
 from ratd.drives import AT_REST, OMEGA_RAT
-from ratd.engine.advance import FULL, NOT_FINITE, STEPS_DONE
+from ratd.engine.advance import FULL, NOT_FINITE
 from ratd.engine.layout import STEPS
 from ratd.engine.state import new_state, with_room
 from ratd.shape import _diagonalise, porosity, semi_axes
-from ratd.spinup import RECORDS, RELAXATION_ROUNDS, RELAXATION_STEPS, Run, Watch, not_at_rest, not_finite
-from ratd.spinup import residual_goal, settle
+from ratd.spinup import (
+    RECORDS,
+    RELAXATION_ROUNDS,
+    RELAXATION_STEPS,
+    Run,
+    Watch,
+    not_at_rest,
+    not_finite,
+    residual_goal,
+    settle,
+)
 
 __all__ = ["spin_up_many"]
 
