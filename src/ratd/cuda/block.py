@@ -6,7 +6,8 @@ number for each thread.
 
 from ratd.cuda.device import SIMULATED, cuda, device_function
 
-WARP = 32
+WARP = 2 if SIMULATED else 32
+"""Threads that go together; the simulation gets small ones, so that its few threads are more than one."""
 
 if SIMULATED:
 
@@ -30,20 +31,28 @@ def greater(a, b):
 
 
 @device_function
-def tree(buffer, first, maximum):
-    """Sum, or greatest value, of each warp's numbers in `buffer` from `first` on, left at its first thread's place."""
+def tree(buffer, sums, maxima):
+    """Sums, or greatest values, over each warp, left at the place of its first thread.
+
+    Parameters
+    ----------
+    buffer : array
+        Parts of one number for each thread.
+    sums, maxima : int
+        Number of parts to sum up, and of those after them to take the greatest value of.
+    """
     thread = cuda.threadIdx.x
+    threads = cuda.blockDim.x
     lane = thread % WARP
     stride = WARP // 2
     warp_barrier()
     while stride > 0:
-        if lane < stride and thread + stride < cuda.blockDim.x:
-            mine = buffer[first + thread]
-            other = buffer[first + thread + stride]
-            if maximum:
-                buffer[first + thread] = greater(mine, other)
-            else:
-                buffer[first + thread] = mine + other
+        if lane < stride and thread + stride < threads:
+            for part in range(sums):
+                buffer[part * threads + thread] += buffer[part * threads + thread + stride]
+            for part in range(sums, sums + maxima):
+                mine = buffer[part * threads + thread]
+                buffer[part * threads + thread] = greater(mine, buffer[part * threads + thread + stride])
         warp_barrier()
         stride //= 2
 
@@ -66,7 +75,7 @@ def block_sum(value, buffer):
     """Sum of one number of each thread."""
     cuda.syncthreads()  # what was in the buffer has been read
     buffer[cuda.threadIdx.x] = value
-    tree(buffer, 0, False)
+    tree(buffer, 1, 0)
     cuda.syncthreads()
     return over_warps(buffer, 0, False)
 
@@ -76,7 +85,7 @@ def block_max(value, buffer):
     """Greatest of one number of each thread; NaN if one of them is."""
     cuda.syncthreads()
     buffer[cuda.threadIdx.x] = value
-    tree(buffer, 0, True)
+    tree(buffer, 0, 1)
     cuda.syncthreads()
     return over_warps(buffer, 0, True)
 

@@ -41,7 +41,7 @@ if SIMULATED:
 else:
     cuda = numba_cuda
 
-MIN_THREADS, MAX_THREADS = (4, 4) if SIMULATED else (32, 512)
+MIN_THREADS, MAX_THREADS = (3, 3) if SIMULATED else (32, 512)
 """Threads of a block. The simulation makes each a Python thread, so it gets few."""
 REGISTERS = 128
 """Registers of a thread: 512 threads then fill the register file of one multiprocessor."""

@@ -144,9 +144,7 @@ def monomer_pass(body, dt, turn, buffer):
     buffer[cuda.threadIdx.x] = angular_momentum
     buffer[threads + cuda.threadIdx.x] = inertia
     buffer[2 * threads + cuda.threadIdx.x] = fastest
-    tree(buffer, 0, False)
-    tree(buffer, threads, False)
-    tree(buffer, 2 * threads, True)
+    tree(buffer, 2, 1)
     cuda.syncthreads()
     return (
         over_warps(buffer, 0, False), over_warps(buffer, threads, False),

@@ -1,0 +1,437 @@
+"""The engine on CUDA in numba's simulation, against the engine on the processor. Run by test_cuda.py in a process of
+its own, because the simulation has to be asked for before numba is imported:
+
+NUMBA_ENABLE_CUDASIM=1 python -m pytest tests/simulated_cuda.py
+"""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ratd
+from ratd import spinup
+from ratd.cuda import spin_up as cuda_spin_up
+from ratd.cuda.advance import PAUSED, advance_grains
+from ratd.cuda.arena import CODE, FEWEST, GOALS, ROWS, SEGMENT_END, STEPS_GOAL, Batch
+from ratd.cuda.block import block_max, block_sum, prefix_sum
+from ratd.cuda.body import body_of
+from ratd.cuda.device import SIMULATED, cuda, kernel
+from ratd.cuda.forces import contact_pass, residual_force, sum_forces
+from ratd.cuda.fragments import drop_departed, find_fragments
+from ratd.cuda.lists import find_far, find_near, link_contacts, update_rates
+from ratd.cuda.measure import write_record
+from ratd.cuda.spin_up import record_of, spin_up_many
+from ratd.drives import make_drive
+from ratd.engine import advance as cpu_advance
+from ratd.engine import fragments as cpu_fragments
+from ratd.engine import layout
+from ratd.engine.contacts import remove_contact, update_contact_rates
+from ratd.engine.forces import SCRATCH_SIZE, contact_forces
+from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
+from ratd.growth import grow
+from ratd.materials import MATERIALS, equilibrium_compression
+from ratd.neighbours import close_pairs
+from ratd.spinup import _record, spin_up
+
+MATERIAL = MATERIALS["q-S"]
+THREADS = 3
+FIELDS = [name for name in ratd.engine.state.State._fields if name != "force"]
+
+if not SIMULATED:
+    pytest.skip("the simulation has to be asked for by NUMBA_ENABLE_CUDASIM=1", allow_module_level=True)
+
+
+def shaken(kind, size, seed, displacement=0.0):
+    """State of a grain whose monomers have random velocities and spins, and whose contacts are displaced."""
+    grain = grow(kind, size, MATERIAL, seed)
+    state = new_state(grain.position, grain.radius, MATERIAL, grain.contacts, timestep_factor=0.02)
+    cpu_fragments.find_fragments(state)
+    rng = np.random.default_rng(seed)
+    rows = monomer_rows(state)
+    rows[:, :3] += 3e-12 * rng.normal(size=(len(rows), 3))
+    rows[:, 4:7] = rng.normal(size=(len(rows), 3))
+    rows[:, 8:11] = 1e8 * rng.normal(size=(len(rows), 3))
+    fields = contact_blocks(state)
+    for first in (layout.NIX, layout.NJX):
+        lane = int(first) // layout.LANES
+        pointer = fields[:, lane : lane + 3, :]
+        pointer += displacement * rng.normal(size=pointer.shape)
+        pointer /= np.linalg.norm(pointer, axis=1, keepdims=True)
+    return state
+
+
+def copy(state):
+    return state._replace(**{name: array.copy() for name, array in state._asdict().items()})
+
+
+def contact_rows(state):
+    """All fields of the contacts, one contact a row."""
+    return np.moveaxis(contact_blocks(state), 1, 2).reshape(-1, layout.N_FIELDS)[: state.counter[layout.CONTACTS]]
+
+
+def assert_close(found, expected, tolerance=1e-12):
+    """Every array and every column of the monomers and every field of the contacts, relative to its greatest value."""
+    for name in FIELDS:
+        a, b = np.asarray(getattr(found, name)), np.asarray(getattr(expected, name))
+        if name == "monomer":
+            a, b = monomer_rows(found), monomer_rows(expected)
+        elif name == "contact":
+            a, b = (
+                np.moveaxis(contact_blocks(state), 1, 2).reshape(-1, layout.N_FIELDS) for state in (found, expected)
+            )
+            a, b = a[: found.counter[layout.CONTACTS]], b[: expected.counter[layout.CONTACTS]]
+        if a.dtype.kind in "iu":
+            if name == "counter":  # the number of searches may differ
+                a, b = a[: layout.SEARCHES], b[: layout.SEARCHES]
+            if name == "fragment":
+                a, b = a[: found.counter[layout.MONOMERS]], b[: expected.counter[layout.MONOMERS]]
+            np.testing.assert_array_equal(a, b, err_msg=name)
+        elif a.ndim == 2 and len(a):
+            scale = np.abs(b).max(axis=0)
+            for first in (0, 4, 8) if name == "monomer" else ():
+                scale[first : first + 3] = scale[first : first + 3].max()
+            assert (np.abs(a - b) <= tolerance * scale).all(), (name, np.abs(a - b).max(axis=0) / (scale + 1e-300))
+        elif a.ndim == 1:
+            if name == "scalar":  # what turns the grain back is a small rest of spins of 1e8 rad/s
+                assert a[layout.UNWIND] == pytest.approx(b[layout.UNWIND], rel=tolerance, abs=1e-8)
+                a, b = np.delete(a, layout.UNWIND), np.delete(b, layout.UNWIND)
+            np.testing.assert_allclose(a, b, rtol=tolerance, atol=1e-12 * tolerance, err_msg=name)
+
+
+@kernel
+def block_kernel(values, sums, whole, totals):
+    buffer = cuda.shared.array(32, np.float64)
+    counts = cuda.shared.array(32, np.int64)
+    thread = cuda.threadIdx.x
+    total = block_sum(values[thread], buffer)
+    greatest = block_max(values[thread], buffer)
+    last = prefix_sum(whole, whole.shape[0], counts)
+    sums[thread, 0] = total
+    sums[thread, 1] = greatest
+    totals[thread] = last
+
+
+@pytest.mark.parametrize("threads", [1, 4, 7])
+def test_sums_over_a_block(threads):
+    rng = np.random.default_rng(threads)
+    values = rng.normal(size=threads)
+    whole = rng.integers(0, 9, size=17)
+    sums, totals, prefix = np.zeros((threads, 2)), np.zeros(threads, dtype=np.int64), whole.copy()
+    block_kernel[1, threads](values, sums, prefix, totals)
+    np.testing.assert_allclose(sums[:, 0], values.sum(), rtol=1e-13)
+    assert (sums[:, 0] == sums[0, 0]).all() and (sums[:, 1] == values.max()).all()
+    assert (totals == whole.sum()).all()
+    np.testing.assert_array_equal(prefix, np.cumsum(whole) - whole)
+    values[threads // 2] = np.nan
+    block_kernel[1, threads](values, sums, prefix, totals)
+    assert np.isnan(sums[:, 1]).all()
+
+
+@kernel
+def force_kernel(arena, dt_drift, dt, forces, ended):
+    counts = cuda.shared.array(8, np.int64)
+    body = body_of(arena, cuda.blockIdx.x)
+    link_contacts(body, counts)
+    ended[cuda.threadIdx.x] = contact_pass(body, dt_drift, dt)
+    cuda.syncthreads()
+    for k in range(cuda.threadIdx.x, forces.shape[0], cuda.blockDim.x):
+        sum_forces(body, np.uint64(k), forces[k])
+
+
+@pytest.mark.parametrize(("kind", "size", "displacement"), [("BA", 90e-9, 1e-4), ("BAM2", 150e-9, 3e-2)])
+def test_forces_and_torques_of_one_step_are_those_of_the_processor(kind, size, displacement):
+    """To 1e-12, below and far beyond the inelastic limits, and with them all fields of the contacts."""
+    state = shaken(kind, size, 1, displacement)
+    dt = state.scalar[layout.DT]
+    batch = Batch([state], 1)
+    n = state.counter[layout.MONOMERS]
+    forces, ended = np.zeros((n, layout.FORCE_ROW)), np.zeros(THREADS, dtype=np.int64)
+    force_kernel[1, THREADS](batch.device, dt, dt, forces, ended)
+    expected = contact_forces(
+        state.monomer, state.force, state.contact, state.pair_i, state.pair_j, np.zeros(SCRATCH_SIZE),
+        state.counter[layout.CONTACTS], dt, dt,
+    )  # fmt: skip
+    rows = state.force.reshape(-1, layout.FORCE_ROW)[:n]
+    assert ended.sum() == expected
+    for columns in (slice(0, 3), slice(4, 7)):
+        scale = np.abs(rows[:, columns]).max()
+        np.testing.assert_allclose(forces[:, columns], rows[:, columns], rtol=0, atol=1e-12 * scale)
+    assert_close(batch.state(0), state)
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [make_drive("prescribed", omega_1=1e8, epsilon=0.1), make_drive("literal", omega_1=1e8, angular_acceleration=1e16)],
+)
+def test_steps_are_those_of_the_processor(drive):
+    """Twenty steps from omega = 1e8 rad/s, in two segments."""
+    state = shaken("BAM1", 90e-9, 2)
+    state.scalar[layout.DT_DRIFT] = state.scalar[layout.DT]
+    state.scalar[layout.TIME] = 1e8 / (drive.acceleration or drive.epsilon * drive.omega_1**2)
+    batch = Batch([state], 2)
+    run(batch, drive, 10)
+    run(batch, drive, 20)
+    for steps in (10, 20):
+        cpu_advance.advance(state, drive, np.inf, steps, -1, 0.02, True)
+    found = batch.state(0)
+    assert state.scalar[layout.TORQUE_WORK] != 0.0 or not drive.torque
+    assert_close(found, state, 1e-10)
+
+
+def run(batch, drive, segment_end, expected=PAUSED):
+    """Run the first grain of a batch with a drive up to a number of steps."""
+    from ratd.cuda import arena
+
+    row, task = batch.host.drive[0], batch.host.task[0]
+    row[[arena.LAW, arena.EPSILON, arena.OMEGA_1, arena.ACCELERATION]] = (
+        drive.law, drive.epsilon, drive.omega_1, drive.acceleration,
+    )  # fmt: skip
+    row[[arena.TORQUE, arena.EXPLICIT_CORIOLIS, arena.SPIN_TERMS]] = (
+        drive.torque, drive.explicit_coriolis, drive.spin_terms,
+    )  # fmt: skip
+    task[[STEPS_GOAL, SEGMENT_END, FEWEST, GOALS]] = 10**9, segment_end, -1, 1
+    batch.host.goal[0, 0] = np.inf
+    batch.send_tasks()
+    advance_grains[1, THREADS](batch.device, np.array([0]), 0.02, True)
+    batch.fetch_tasks()
+    assert batch.host.task[0, CODE] == expected and batch.host.task[0, ROWS] == 0
+
+
+def test_too_little_room_is_told_before_anything_moves():
+    state = shaken("BAM2", 150e-9, 3)
+    contacts = state.counter[layout.CONTACTS]
+    slots = -(-contacts // layout.LANES) * layout.LANES
+    tight = state._replace(
+        contact=state.contact[: slots * layout.N_FIELDS].copy(),
+        pair_i=state.pair_i[:slots].copy(),
+        pair_j=state.pair_j[:slots].copy(),
+    )
+    drive = make_drive("prescribed", omega_1=1e8, epsilon=0.1)
+    # monomers that almost touch fill the room that is left
+    near = cpu_advance._near_pairs(state, all_pairs(state, 1.0), 1.0)
+    assert len(near) > slots - contacts
+    batch = Batch([tight], 2)
+    from ratd.cuda import advance
+
+    keep = advance.NEAR, advance.FAR
+    try:
+        advance.NEAR, advance.FAR = 50.0, 60.0
+        run(batch, drive, 5, cpu_advance.FULL)
+    finally:
+        advance.NEAR, advance.FAR = keep
+    found = batch.state(0)
+    assert found.counter[layout.STEPS] == 0
+    batch = Batch([with_room(found, 2 * slots)], 2)
+    run(batch, drive, 5)
+    cpu_advance.advance(state, drive, np.inf, 5, -1, 0.02, True)
+    assert_close(batch.state(0)._replace(pair_i=state.pair_i, pair_j=state.pair_j), state, 1e-10)
+
+
+def all_pairs(state, reach):
+    position, radius = cpu_advance._positions(state)
+    return close_pairs(position, radius, reach)
+
+
+@kernel
+def list_kernel(arena, far_reach, near_reach, numbers):
+    buffer = cuda.shared.array(32, np.float64)
+    counts = cuda.shared.array(32, np.int64)
+    body = body_of(arena, cuda.blockIdx.x)
+    link_contacts(body, counts)
+    update_rates(body, 0.03, True, buffer)
+    numbers[0] = find_far(body, far_reach, counts)
+    numbers[1] = find_near(body, numbers[0], near_reach, counts)
+
+
+def test_lists_and_rates_are_those_of_the_processor():
+    state = shaken("BAM1", 120e-9, 4)
+    batch, numbers = Batch([state], 1), np.zeros(2, dtype=np.int64)
+    list_kernel[1, THREADS](batch.device, 30e-9, 10e-9, numbers)
+    far = all_pairs(state, 30e-9)
+    near = cpu_advance._near_pairs(state, far, 10e-9)
+    assert len(far) > len(near) > 1
+    np.testing.assert_array_equal(batch.device.far[: numbers[0]], far)
+    np.testing.assert_array_equal(batch.device.near[: numbers[1]], near)
+    update_contact_rates(state, 0.03, True)
+    assert_close(batch.state(0), state)
+
+
+@kernel
+def fragment_kernel(arena, drop, numbers):
+    buffer = cuda.shared.array(32, np.float64)
+    counts = cuda.shared.array(32, np.int64)
+    body = body_of(arena, cuda.blockIdx.x)
+    numbers[0] = find_fragments(body, buffer, counts)
+    if drop:
+        numbers[1] = drop_departed(body, numbers[0], buffer)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_fragments_are_found_and_dropped_as_on_the_processor(seed):
+    """A chain-like grain without some of its contacts, as it stands and with its pieces far apart."""
+    state = shaken("BA", 110e-9, seed)
+    rng = np.random.default_rng(seed)
+    for _ in range(1 + 3 * seed):
+        remove_contact(state, int(rng.integers(state.counter[layout.CONTACTS])))
+    for drop in (False, True):
+        batch, numbers = Batch([state], 1), np.zeros(2, dtype=np.int64)
+        fragment_kernel[1, THREADS](batch.device, drop, numbers)
+        fragments = cpu_fragments.find_fragments(state)
+        assert numbers[0] == fragments == 2 + 3 * seed
+        if drop:
+            dropped = cpu_fragments.drop_departed(state, fragments)
+            assert dropped > 0 and numbers[1] == 1
+            assert state.counter[layout.FRAGMENTS_LOST] == dropped
+        assert_close(batch.state(0), state)
+        rows = monomer_rows(state)
+        for fragment in range(1, fragments):
+            inside = state.fragment[: len(rows)] == fragment
+            away = rng.normal(size=3)
+            rows[inside, :3] += 3e-6 * away
+            rows[inside, 4:7] = 10.0 * away
+
+
+@kernel
+def record_kernel(arena):
+    buffer = cuda.shared.array(32, np.float64)
+    write_record(body_of(arena, cuda.blockIdx.x), arena.row[cuda.blockIdx.x, 0], buffer)
+
+
+def test_record_is_that_of_the_processor():
+    state = shaken("BA", 110e-9, 5, 1e-3)
+    cpu_advance.advance(state, make_drive("prescribed", omega_1=1e8, epsilon=0.1), np.inf, 30, -1, 0.02, True)
+    remove_contact(state, 3)
+    cpu_fragments.find_fragments(state)
+    for samples in (1.0, 0.0):
+        state.scalar[layout.STRESS_SAMPLES] = samples
+        batch = Batch([state], 1)
+        record_kernel[1, THREADS](batch.device)
+        batch.fetch_tasks()
+        expected = _record(state, MATERIAL.density)
+        np.testing.assert_allclose(record_of(batch.host.row[0, 0], MATERIAL.density), expected, rtol=1e-11)
+        assert expected[3] < len(state.identity)  # not the whole grain
+
+
+@kernel
+def residual_kernel(arena, found):
+    buffer = cuda.shared.array(32, np.float64)
+    counts = cuda.shared.array(32, np.int64)
+    body = body_of(arena, cuda.blockIdx.x)
+    link_contacts(body, counts)
+    found[cuda.threadIdx.x] = residual_force(body, buffer)
+
+
+def test_residual_force_is_that_of_the_processor():
+    state = shaken("BAM1", 90e-9, 6, 1e-4)
+    batch, found = Batch([copy(state)], 1), np.zeros(THREADS)
+    residual_kernel[1, THREADS](batch.device, found)
+    np.testing.assert_allclose(found, cpu_advance.residual_force(state), rtol=1e-12)
+
+
+FAST = dict(angular_acceleration=4e18, records=20)
+
+
+@pytest.fixture(scope="module")
+def grains():
+    return [grow("BA", 55e-9, "q-S", 0), pressed_pair(20e-9), grow("BAM2", 55e-9, "q-S", 0)]
+
+
+def pressed_pair(a):
+    """Two monomers that overlap by more than in equilibrium, so that there is something to relax."""
+    delta_0 = equilibrium_compression(a / 2, MATERIAL.surface_energy, MATERIAL.reduced_modulus)
+    return ratd.Grain(np.array([[0.0, 0, 0], [2 * a - 1.1 * delta_0, 0, 0]]), np.array([a, a]), MATERIAL)
+
+
+@pytest.fixture(scope="module")
+def runs(grains):
+    return spin_up_many(grains, snapshots=[0], snapshot_every=20, **FAST)
+
+
+def assert_same_run(found, expected, tolerance):
+    assert found.sizes == expected.sizes
+    for name, value in expected.attrs.items():
+        if not (isinstance(value, float) and np.isnan(value)):
+            assert found.attrs[name] == (pytest.approx(value, rel=tolerance) if isinstance(value, float) else value), (
+                name
+            )
+    for name in expected.data_vars:
+        values = expected[name].values
+        scale = np.nanmax(np.abs(values)) if values.size else 0.0
+        np.testing.assert_allclose(found[name].values, values, rtol=0, atol=tolerance * scale, err_msg=name)
+
+
+def test_whole_runs_are_those_of_the_processor(grains, runs):
+    """Relaxation, records, snapshots, breaking, fragments lost: up to rounding, which has little time to grow here."""
+    assert runs[0].sizes["fragment"] >= 1 and runs[0].sizes["snapshot"] >= 3
+    for number, grain in enumerate(grains):
+        expected = spin_up(grain, snapshot_every=20 if number == 0 else 0, **FAST)
+        assert_same_run(runs[number], expected, 1e-8)
+
+
+def test_literal_drive_and_explicit_damping(grains):
+    settings = dict(drive="literal", damping="explicit", timestep_factor=0.02, max_steps=100, **FAST)
+    (found,) = spin_up_many(grains[:1], **settings)
+    expected = spin_up(grains[0], **settings)
+    assert found.attrs["end_reason"] == "max_steps reached" and found.attrs["steps"] == 100
+    assert_same_run(found, expected, 1e-8)
+
+
+def test_killed_runs_go_on_with_the_same_bits(grains, tmp_path, monkeypatch):
+    """Killed twice between launches, with short segments."""
+    monkeypatch.setattr(cuda_spin_up, "SEGMENT", 1)
+    monkeypatch.setattr(cuda_spin_up, "CHECKPOINT_INTERVAL", 0.0)
+    settings = dict(max_steps=60, **FAST)
+    undisturbed = spin_up_many(grains[:2], **settings)
+    paths = [tmp_path / f"{number}.checkpoint" for number in range(2)]
+    launch, launches = cuda_spin_up._launch, []
+
+    def dying(*arguments):
+        launches.append(1)
+        if len(launches) in (4, 6):
+            raise KeyboardInterrupt
+        launch(*arguments)
+
+    monkeypatch.setattr(cuda_spin_up, "_launch", dying)
+    kept = {}
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            spin_up_many(grains[:2], checkpoints=paths, done=kept.__setitem__, **settings)
+    assert any(path.exists() for path in paths)
+    resumed = spin_up_many(grains[:2], checkpoints=paths, **settings)
+    for found, expected in zip(resumed, undisturbed, strict=True):
+        xr.testing.assert_identical(found, expected)
+    for number, found in kept.items():
+        xr.testing.assert_identical(found, undisturbed[number])
+
+
+def test_a_grain_that_fails_does_not_stop_the_others(grains, monkeypatch):
+    begin = cuda_spin_up.Run.begin
+
+    def spoilt(run, state):
+        begin(run, state)
+        if run.grain is grains[1]:
+            monomer_rows(run.state)[0, 4] = np.nan
+
+    monkeypatch.setattr(cuda_spin_up.Run, "begin", spoilt)
+    finished = {}
+    with pytest.raises(RuntimeError, match="grain 0: the integration failed"):
+        spin_up_many([grains[1], grains[0]], done=finished.__setitem__, max_steps=50, **FAST)
+    assert list(finished) == [1]
+
+
+def test_relaxation_ends_where_that_of_the_processor_ends(grains, monkeypatch):
+    """The pair was pressed: it takes the same number of steps until it rests, and then looks the same."""
+    rested = []
+    settle = spinup.settle
+
+    def noted(state, timestep_factor):
+        rested.append(copy(state))
+        settle(state, timestep_factor)
+
+    monkeypatch.setattr(spinup, "settle", noted)
+    monkeypatch.setattr(cuda_spin_up, "settle", noted)
+    (found,) = spin_up_many(grains[1:2], max_steps=1, **FAST)
+    expected = spin_up(grains[1], max_steps=1, **FAST)
+    assert rested[0].counter[layout.STEPS] == rested[1].counter[layout.STEPS] > 0
+    assert_close(rested[0], rested[1], 1e-9)
+    assert_same_run(found, expected, 1e-9)
