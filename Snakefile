@@ -24,6 +24,14 @@ try:
 except InputError as error:
     sys.exit(str(error))
 
+if PLAN.config["engine"] == "cuda":
+    from ratd.cuda.device import require
+
+    try:
+        require()
+    except InputError as error:
+        sys.exit(str(error))
+
 jobs.release_stale_locks()
 CODE = jobs.code_hashes(Path(workflow.basedir, "workflow", "scripts"))
 
@@ -41,7 +49,7 @@ wildcard_constraints:
 
 
 include: "workflow/rules/grains.smk"
-include: "workflow/rules/spinup.smk"
+include: f"workflow/rules/spinup{'_cuda' if PLAN.config['engine'] == 'cuda' else ''}.smk"
 include: "workflow/rules/disruption.smk"
 include: "workflow/rules/ensemble.smk"
 include: "workflow/rules/figures.smk"

@@ -1,9 +1,9 @@
 """What a job of the pipeline needs around the calculation: log, provenance, partial results, locks.
 
-A job makes one file for a block of grains. Each finished grain is kept at once as a small file of its own in the
-folder `TARGET.partial`, which Snakemake does not know of, with the hashes of the source, settings and inputs that it
-was made with. A job that was killed takes from there what still fits, and only that. The folder is removed by `tidy`
-when the pipeline has succeeded.
+A job makes one file for a block of grains, or several of them. Each finished grain is kept at once as a small file of
+its own in the folder `TARGET.partial`, which Snakemake does not know of, with the hashes of the source, settings and
+inputs that it was made with. A job that was killed takes from there what still fits, and only that. The folder is
+removed by `tidy` when the pipeline has succeeded.
 
 This module decides no number: it is left out of all source hashes (see `ratd.provenance`).
 """
@@ -14,16 +14,19 @@ import os
 import shutil
 import sys
 import time
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from ratd import io, schema
 from ratd.errors import FileError, InputError
+from ratd.materials import Material
 from ratd.provenance import provenance, settings_hash, source_hash
 
 WRITES = {
     "grow": ("grains",),
     "spin_up": ("spinup",),
+    "spin_up_cuda": ("spinup",),
     "disrupt": ("disruption",),
     "ensemble": ("table", "cells", "fit"),
 }
@@ -66,6 +69,41 @@ def code_hashes(scripts):
         Name of the rule -> `code_hash`.
     """
     return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
+
+
+@dataclass(frozen=True)
+class Block:
+    """A file to write, with the grains of one block.
+
+    Attributes
+    ----------
+    target : Path
+        The file.
+    material : ratd.materials.Material
+        What the grains are made of.
+    seeds : list of int
+        Seeds of the grains, in the order in which they stand in the file.
+    provenance : dict
+        Attributes of the file, from `ratd.provenance.provenance`.
+    """
+
+    target: Path
+    material: Material
+    seeds: list
+    provenance: dict
+
+    @property
+    def folder(self):
+        """Folder of the finished grains while the file is not finished."""
+        return partial_folder(self.target)
+
+    def piece(self, seed):
+        """File of one finished grain."""
+        return self.folder / f"seed_{seed}.nc"
+
+    def checkpoint(self, seed):
+        """Below this path a grain may keep what it needs to go on in its middle."""
+        return self.folder / f"seed_{seed}.{settings_hash(self.provenance)}.checkpoint"
 
 
 class Job:
@@ -146,34 +184,72 @@ class Job:
             keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
             has another name and is never found.
         """
-        target = Path(target)
-        folder = partial_folder(target)
-        key = settings_hash(self.provenance)
-        with locked(folder / "lock", self.log):
-            kept = 0
-            rows = []
-            for place, seed in enumerate(seeds, start=1):
-                piece = folder / f"seed_{seed}.nc"
-                if io.holds(piece, kind, self.provenance):
-                    kept += 1
-                else:
-                    start = time.monotonic()
-                    checkpoint = folder / f"seed_{seed}.{key}.checkpoint"
-                    row = make(seed, checkpoint)
-                    io.write(piece, io.block([row], kind, material, self.provenance), kind)
-                    checkpoint.unlink(missing_ok=True)
-                    seconds = time.monotonic() - start
-                    self.log.info(f"seed {seed}: done in {seconds:.1f} s ({place} of {len(seeds)} grains)")
-                rows += io.rows(io.read(piece, kind), kind)
-            io.write(target, io.block(rows, kind, material, self.provenance), kind)
-            self.log.info(f"{len(seeds)} grains written to {target}, {kept} of them were finished before")
+        block = Block(Path(target), material, list(seeds), self.provenance)
 
-    def progress(self, seed):
+        def make_all(waiting, done):
+            for number, (block, seed) in enumerate(waiting):
+                done(number, make(seed, block.checkpoint(seed)))
+
+        self.blocks([block], kind, make_all)
+
+    def blocks(self, blocks, kind, make):
+        """Write the files of some blocks of grains together, going on where a killed job was.
+
+        Parameters
+        ----------
+        blocks : list of Block
+        kind : str
+            A key of `ratd.schema.KINDS`.
+        make : callable
+            ``make(waiting, done)`` computes the grains that are not finished yet, ``waiting``, a list of pairs of a
+            block and a seed, in any order. It calls ``done(number, row)`` with the place in this list and the row
+            (see `ratd.io`) of each grain that it has finished.
+        """
+        with ExitStack() as locks:
+            for block in sorted(blocks, key=lambda block: block.target):
+                locks.enter_context(locked(block.folder / "lock", self.log))
+            waiting = [
+                (block, seed)
+                for block in blocks
+                for seed in block.seeds
+                if not io.holds(block.piece(seed), kind, block.provenance)
+            ]
+            every = sum(len(block.seeds) for block in blocks)
+            kept = every - len(waiting)
+            finished = kept
+            start = time.monotonic()
+
+            def done(number, row):
+                nonlocal finished, start
+                block, seed = waiting[number]
+                io.write(block.piece(seed), io.block([row], kind, block.material, block.provenance), kind)
+                block.checkpoint(seed).unlink(missing_ok=True)
+                finished += 1
+                seconds = time.monotonic() - start
+                start = time.monotonic()
+                place = f"{block.target.parent.name} " if len(blocks) > 1 else ""
+                self.log.info(f"{place}seed {seed}: done in {seconds:.1f} s ({finished} of {every} grains)")
+
+            if waiting:
+                make(waiting, done)
+            for block in blocks:
+                rows = [row for seed in block.seeds for row in io.rows(io.read(block.piece(seed), kind), kind)]
+                io.write(block.target, io.block(rows, kind, block.material, block.provenance), kind)
+            where = blocks[0].target if len(blocks) == 1 else f"{len(blocks)} files"
+            self.log.info(f"{every} grains written to {where}, {kept} of them were finished before")
+
+    def provenance_of(self, settings, inputs):
+        """Attributes of one of several files that the job writes, which has settings and inputs of its own."""
+        return provenance(self._snakemake.params.code, settings, inputs)
+
+    def progress(self, seed, place=""):
         """Callback for `ratd.spin_up` that says how far the run of one grain is.
 
         Parameters
         ----------
         seed : int
+        place : str, optional
+            What stands before the seed, where the job has several blocks.
 
         Returns
         -------
@@ -188,7 +264,7 @@ class Job:
             if now - last >= PROGRESS_INTERVAL:
                 last = now
                 self.log.info(
-                    f"seed {seed}: omega {omega:.3g} rad/s, mass left {100 * mass_fraction:.0f} %, "
+                    f"{place}seed {seed}: omega {omega:.3g} rad/s, mass left {100 * mass_fraction:.0f} %, "
                     f"{duration(seconds_to_go)} to go, {steps} steps"
                 )
 

@@ -1,0 +1,123 @@
+"""The engine on CUDA: its kernels in simulation, its rule, and what is said where there is no GPU."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import yaml
+
+import test_pipeline
+from ratd import io
+from ratd.cuda import device
+from ratd.cuda.arena import Batch
+from ratd.engine.state import new_state
+from ratd.errors import InputError
+from ratd.growth import grow
+
+SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1"}
+TINY = {
+    "results": "results/tiny",
+    "materials": ["q-S"],
+    "types": ["BA"],
+    "sizes_nm": [45, 50],
+    "seeds": {"first": 0, "number": 2},
+    "block_size": 2,
+    "spin_up": {"epsilon": None, "angular_acceleration": 4e18, "records": 20, "max_steps": 150},
+    "snapshots": {"every": 5, "grains": [{"material": "q-S", "type": "BA", "size_nm": 45, "seed": 1}]},
+    "figures": {"figure4": None, "figure6": None},
+}
+
+
+def usable():
+    try:
+        device.require()
+    except InputError:
+        return False
+    return True
+
+
+no_gpu = pytest.mark.skipif(usable(), reason="there is a GPU")
+
+
+def test_kernels_in_simulation():
+    """tests/simulated_cuda.py; the simulation has to be asked for before numba is imported."""
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", str(Path(__file__).with_name("simulated_cuda.py"))],
+        env=os.environ | SIMULATED,
+        capture_output=True,
+        text=True,
+        timeout=1200,
+    )
+    assert done.returncode == 0 and "skipped" not in done.stdout, done.stdout + done.stderr
+
+
+@no_gpu
+def test_missing_gpu_is_one_sentence():
+    with pytest.raises(InputError, match="^engine is cuda, but [^\n]*[.]$"):
+        device.require()
+
+
+@no_gpu
+def test_pipeline_without_gpu_ends_with_one_sentence_before_any_job(tmp_path):
+    pipeline = test_pipeline.Pipeline(tmp_path)
+    pipeline.write_config(TINY | {"engine": "cuda"})
+    done = pipeline.run()
+    assert done.returncode != 0
+    *remarks, sentence = [line for line in done.stdout.splitlines() if line]
+    assert sentence.startswith("engine is cuda, but ") and len(remarks) == 2
+    assert not (tmp_path / "results").exists()
+
+
+def test_pipeline_writes_the_files_of_the_other_engine(tmp_path):
+    """In simulation: one job for all sizes and seeds, the same files with the same grains, records and snapshots."""
+    files = {}
+    for engine in ("cpu", "cuda"):
+        (tmp_path / engine).mkdir()
+        pipeline = test_pipeline.Pipeline(tmp_path / engine)
+        pipeline.environment |= SIMULATED
+        (pipeline.folder / "tiny.yaml").write_text(yaml.safe_dump(TINY | {"engine": engine}))
+        planned = pipeline.planned("spinups")
+        assert planned["spin_up_cuda" if engine == "cuda" else "spin_up"] == (1 if engine == "cuda" else 2)
+        done = pipeline.run("spinups")
+        assert done.returncode == 0, done.stdout
+        assert pipeline.planned("spinups") == {}
+        folder = pipeline.folder / "results/tiny/spinup"
+        files[engine] = {path.relative_to(folder): io.read(path, "spinup") for path in folder.rglob("*.nc")}
+        assert not list(folder.rglob("*.partial"))
+    assert len(files["cpu"]) == 2 and files["cpu"].keys() == files["cuda"].keys()
+    for name, expected in files["cpu"].items():
+        found = files["cuda"][name]
+        assert found.sizes == expected.sizes
+        same = ("material", "type", "drive", "spin_up_law", "settings", "input_hash")
+        assert {key: found.attrs[key] for key in same} == {key: expected.attrs[key] for key in same}
+        for variable in expected.variables:
+            values = expected[variable].values
+            if values.dtype.kind == "f" and values.size:
+                scale = np.nanmax(np.abs(values))
+                np.testing.assert_allclose(found[variable].values, values, rtol=0, atol=1e-6 * scale, err_msg=variable)
+            else:
+                np.testing.assert_array_equal(found[variable].values, values, err_msg=variable)
+
+
+def test_kernel_compiles_for_a_device(monkeypatch):
+    """To PTX for compute capability 9.0, which takes the compiler of environment-gpu.txt but no device."""
+    if device.numba_cuda.implementation != "NVIDIA":
+        pytest.skip("needs the packages of environment-gpu.txt")
+    from numba import types
+    from numba.cuda import dispatcher
+    from numba.cuda.typing.typeof import Purpose, typeof
+
+    from ratd.cuda import advance, arena
+
+    monkeypatch.setattr(dispatcher, "get_current_device", lambda: SimpleNamespace(compute_capability=(9, 0)))
+    monkeypatch.setattr(arena, "upload", lambda array: array)
+    grain = grow("BAM2", 55e-9, "q-S", 0)
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=0.05)
+    arrays = typeof(Batch([state], 2).device, Purpose.argument)
+    arguments = (arrays, types.Array(types.int64, 1, "C"), types.float64, types.boolean)
+    text, _ = device.numba_cuda.compile_ptx(advance.advance_grains.py_func, arguments, cc=(9, 0))
+    assert ".target sm_90" in text and "fma.rn.f64" in text
