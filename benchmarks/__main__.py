@@ -6,12 +6,15 @@ from pathlib import Path
 
 from benchmarks import cost, kernel, machine, peer, report, scaling
 from ratd import config
+from ratd.cuda import device
 from ratd.drives import DRIVES
 from ratd.errors import FileError, InputError
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling")
+ON_REQUEST = ("gpu",)
+"""Parts that are done only when they are named."""
 
 
 def parser():
@@ -20,7 +23,8 @@ def parser():
         prog="python -m benchmarks",
         description="Measure the speed of ratd. Nothing else should run on the machine meanwhile.",
     )
-    result.add_argument("parts", nargs="*", metavar="PART", help=f"{', '.join(PARTS)}; all if not given")
+    words = f"{', '.join(PARTS + ON_REQUEST)}; {', '.join(PARTS)} if not given"
+    result.add_argument("parts", nargs="*", metavar="PART", help=words)
     result.add_argument("--pairs", type=int, default=5, help="runs of each code in alternation (default 5)")
     result.add_argument("--steps", type=int, default=10_000, help="steps of each run (default 10000)")
     result.add_argument("--aggregate", type=Path, action="append", default=[], metavar="FILE",
@@ -72,15 +76,17 @@ def say(text):
 
 def _measure(arguments):
     parts = arguments.parts or PARTS
-    unknown = [part for part in parts if part not in PARTS]
+    unknown = [part for part in parts if part not in PARTS + ON_REQUEST]
     if unknown:
-        raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS)}.")
+        raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS + ON_REQUEST)}.")
     for name in ("pairs", "steps", "coarse", "seeds"):
         if getattr(arguments, name) < 1:
             raise InputError(f"--{name} is {getattr(arguments, name)}; it must be at least 1.")
     quick = arguments.quick
     if quick and arguments.out is None:
         raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
+    if "gpu" in parts:
+        device.require()
     out = arguments.out or HERE / "results"
     about = {
         "machine": machine.processor(),
@@ -131,13 +137,30 @@ def _measure(arguments):
             about=about,
             say=say,
         )
+    if "gpu" in parts:
+        # Imported here, because it compiles for a device.
+        from benchmarks import gpu
+
+        gpu.measure(
+            out,
+            monomers=[10] if quick else [10, 100, 500, 2000],
+            steps=10 if quick else arguments.steps,
+            repeats=1 if quick else arguments.pairs,
+            plan=_plan([ROOT / "config" / "config.yaml", *arguments.config], quick, {"types": ["BA"]}, max_steps=20),
+            minutes=arguments.minutes,
+            about=about,
+            say=say,
+        )
     report.write(out)
     say(f"written: {out / 'README.md'}")
     return 0 if complete else 3
 
 
-def _plan(paths, quick):
-    """The config; paths in it are meant from the folder of the repository."""
+def _plan(paths, quick, over=None, **spin_up):
+    """The config; paths in it are meant from the folder of the repository.
+
+    `over` and keys of `spin_up` stand over it in a quick run.
+    """
     settings = {}
     for path in paths:
         settings = config.merge(settings, config.read_yaml(path))
@@ -153,8 +176,10 @@ def _plan(paths, quick):
                 "literal": {"angular_acceleration": 1e17},
                 "snapshots": {"grains": []},
                 "figures": {"figure4": None, "figure6": None},
-            },
+            }
+            | (over or {}),
         )
+        settings["spin_up"] |= spin_up
     return config.check(settings, ROOT / "config" / "schema")
 
 

@@ -12,7 +12,7 @@ import ratd
 from ratd import spinup
 from ratd.cuda import spin_up as cuda_spin_up
 from ratd.cuda.advance import PAUSED, advance_grains
-from ratd.cuda.arena import CODE, FEWEST, GOALS, ROWS, SEGMENT_END, STEPS_GOAL, Batch
+from ratd.cuda.arena import CODE, FEWEST, GOALS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive
 from ratd.cuda.block import block_max, block_sum, prefix_sum
 from ratd.cuda.body import body_of
 from ratd.cuda.device import SIMULATED, cuda, kernel
@@ -180,15 +180,8 @@ def test_steps_are_those_of_the_processor(drive):
 
 def run(batch, drive, segment_end, expected=PAUSED):
     """Run the first grain of a batch with a drive up to a number of steps."""
-    from ratd.cuda import arena
-
-    row, task = batch.host.drive[0], batch.host.task[0]
-    row[[arena.LAW, arena.EPSILON, arena.OMEGA_1, arena.ACCELERATION]] = (
-        drive.law, drive.epsilon, drive.omega_1, drive.acceleration,
-    )  # fmt: skip
-    row[[arena.TORQUE, arena.EXPLICIT_CORIOLIS, arena.SPIN_TERMS]] = (
-        drive.torque, drive.explicit_coriolis, drive.spin_terms,
-    )  # fmt: skip
+    task = batch.host.task[0]
+    write_drive(batch.host.drive[0], drive)
     task[[STEPS_GOAL, SEGMENT_END, FEWEST, GOALS]] = 10**9, segment_end, -1, 1
     batch.host.goal[0, 0] = np.inf
     batch.send_tasks()

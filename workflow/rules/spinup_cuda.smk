@@ -17,7 +17,7 @@ rule spin_up_cuda:
     benchmark:
         "<results>/benchmarks/spinup/{drive}/{material}/{type}.tsv"
     conda:
-        "../envs/ratd.yaml"
+        "../envs/ratd_gpu.yaml"
     threads: 1
     resources:
         gpu=1,

@@ -3,22 +3,8 @@
 import numpy as np
 
 from ratd.cuda.arena import (
-    ACCELERATION,
-    CODE,
-    EPSILON,
-    EXPLICIT_CORIOLIS,
-    FEWEST,
-    GOALS,
-    KINETIC,
-    LAW,
-    OMEGA_1,
-    RELAXING,
-    RESIDUAL,
-    ROWS,
-    SEGMENT_END,
-    SPIN_TERMS,
-    STEPS_GOAL,
-    TORQUE,
+    ACCELERATION, CODE, EPSILON, EXPLICIT_CORIOLIS, FEWEST, GOALS, KINETIC, LAW, OMEGA_1, RELAXING, RESIDUAL, ROWS,
+    SEGMENT_END, SPIN_TERMS, STEPS_GOAL, TORQUE,
 )  # fmt: skip
 from ratd.cuda.block import block_max, block_sum
 from ratd.cuda.body import body_of
@@ -50,24 +36,8 @@ from ratd.engine.advance import (
 )
 from ratd.engine.contacts import append_contact, contact_start, remove_contact
 from ratd.engine.layout import (
-    COMPRESSION,
-    CONTACTS,
-    DT,
-    DT_DRIFT,
-    LARGEST_CONTACTS,
-    MONOMERS,
-    OMEGA,
-    RADIUS,
-    ROW,
-    SEARCHES,
-    STEPS,
-    STRESS_SAMPLES,
-    STRESS_SUM,
-    TIME,
-    TORQUE_WORK,
-    UNWIND,
-    VX,
-    WX,
+    COMPRESSION, CONTACTS, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW, SEARCHES, STEPS,
+    STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, VX, WX,
 )  # fmt: skip
 from ratd.laws.jkr import COMPRESSION_END
 from ratd.spinup import RELAXATION_STEPS

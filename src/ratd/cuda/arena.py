@@ -91,6 +91,12 @@ class Arena(NamedTuple):
     row: np.ndarray
 
 
+def write_drive(row, motion):
+    """Write a `ratd.drives.Drive` into its row of numbers."""
+    row[[LAW, EPSILON, OMEGA_1, ACCELERATION]] = motion.law, motion.epsilon, motion.omega_1, motion.acceleration
+    row[[TORQUE, EXPLICIT_CORIOLIS, SPIN_TERMS]] = motion.torque, motion.explicit_coriolis, motion.spin_terms
+
+
 def _parts(at, grain):
     """Part of each array of the state that belongs to a grain, by name of the array."""
     rows = slice(at[grain, MONOMER_AT] * ROW, at[grain + 1, MONOMER_AT] * ROW)

@@ -10,27 +10,8 @@ from ratd.cuda.lists import link_to
 from ratd.drives import kick_and_drift_one
 from ratd.engine.forces import SCRATCH_SIZE, forces_between
 from ratd.engine.layout import (
-    CONTACTS,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    FX,
-    FY,
-    FZ,
-    LANES,
-    MONOMERS,
-    RADIUS,
-    ROW,
-    TIX,
-    TIY,
-    TIZ,
-    TJX,
-    TJY,
-    TJZ,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
+    CONTACTS, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, FX, FY, FZ, LANES, MONOMERS, RADIUS, ROW, TIX, TIY, TIZ, TJX, TJY,
+    TJZ, TORQUE_X, TORQUE_Y, TORQUE_Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)

@@ -8,18 +8,7 @@ from ratd.cuda.block import block_max, block_sum, prefix_sum
 from ratd.cuda.device import cuda, device_function
 from ratd.engine.fragments import drop, note_lost
 from ratd.engine.layout import (
-    CONTACTS,
-    DRIVEN,
-    LARGEST_CONTACTS,
-    LARGEST_MONOMERS,
-    MASS,
-    MONOMERS,
-    RADIUS,
-    ROW,
-    VX,
-    X,
-    Y,
-    Z,
+    CONTACTS, DRIVEN, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, RADIUS, ROW, VX, X, Y, Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)

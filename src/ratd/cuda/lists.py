@@ -10,17 +10,7 @@ from ratd.cuda.device import cuda, device_function
 from ratd.engine.advance import gap
 from ratd.engine.contacts import contact_start, contact_timestep
 from ratd.engine.layout import (
-    CONTACTS,
-    DAMPING,
-    DAMPING_RATE,
-    DT,
-    INV_MASS,
-    LANES,
-    MONOMERS,
-    ROW,
-    X,
-    Y,
-    Z,
+    CONTACTS, DAMPING, DAMPING_RATE, DT, INV_MASS, LANES, MONOMERS, ROW, X, Y, Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)

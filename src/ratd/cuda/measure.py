@@ -6,33 +6,9 @@ from ratd.cuda.block import block_sum
 from ratd.cuda.device import cuda, device_function
 from ratd.engine.contacts import contact_energies, contact_start
 from ratd.engine.layout import (
-    CONTACTS,
-    DRIVEN,
-    DT,
-    E_DAMP,
-    E_ROLL,
-    E_SLIDE,
-    E_TWIST,
-    FRAGMENTS_LOST,
-    LARGEST_CONTACTS,
-    LARGEST_MONOMERS,
-    LOST_CONTACT,
-    LOST_DAMP,
-    LOST_ROLL,
-    LOST_SLIDE,
-    LOST_TWIST,
-    MASS,
-    MONOMERS,
-    OMEGA,
-    RADIUS,
-    ROW,
-    STRESS_SAMPLES,
-    STRESS_SUM,
-    TIME,
-    TORQUE_WORK,
-    X,
-    Y,
-    Z,
+    CONTACTS, DRIVEN, DT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS,
+    LOST_CONTACT, LOST_DAMP, LOST_ROLL, LOST_SLIDE, LOST_TWIST, MASS, MONOMERS, OMEGA, RADIUS, ROW, STRESS_SAMPLES,
+    STRESS_SUM, TIME, TORQUE_WORK, X, Y, Z,
 )  # fmt: skip
 from ratd.engine.measure import contact_stress, kinetic_energy
 

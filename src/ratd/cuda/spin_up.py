@@ -6,23 +6,7 @@ import numpy as np
 
 from ratd.cuda.advance import PAUSED, RESTED, advance_grains
 from ratd.cuda.arena import (
-    ACCELERATION,
-    CODE,
-    EPSILON,
-    EXPLICIT_CORIOLIS,
-    FEWEST,
-    GOALS,
-    LAW,
-    OMEGA_1,
-    RELAXING,
-    RESIDUAL,
-    ROW_COLUMNS,
-    ROWS,
-    SEGMENT_END,
-    SPIN_TERMS,
-    STEPS_GOAL,
-    TORQUE,
-    Batch,
+    CODE, FEWEST, GOALS, RELAXING, RESIDUAL, ROW_COLUMNS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive,
 )  # fmt: skip
 from ratd.cuda.device import MAX_THREADS, MIN_THREADS, SIMULATED, cuda, require, upload
 from ratd.drives import AT_REST, OMEGA_RAT
@@ -118,9 +102,7 @@ class Spinning:
     def tell(self, batch, place):
         """Write down what the grain is to do in the next launch."""
         task, drive, run = batch.host.task[place], batch.host.drive[place], self.run
-        motion = AT_REST if self.relaxing else run.motion
-        drive[[LAW, EPSILON, OMEGA_1, ACCELERATION]] = motion.law, motion.epsilon, motion.omega_1, motion.acceleration
-        drive[[TORQUE, EXPLICIT_CORIOLIS, SPIN_TERMS]] = motion.torque, motion.explicit_coriolis, motion.spin_terms
+        write_drive(drive, AT_REST if self.relaxing else run.motion)
         task[RELAXING] = self.relaxing
         task[SEGMENT_END] = (run.state.counter[STEPS] // self.segment + 1) * self.segment
         if self.relaxing:
