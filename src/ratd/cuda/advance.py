@@ -142,6 +142,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     goals = arena.goal[grain]
     law = drive_of(arena.drive[grain])
     relaxing = task[RELAXING] > 0
+    centre_every = RELAXATION_STEPS if relaxing else CENTRE_EVERY
 
     smallest, mean = radii(body, buffer)
     far_reach = FAR * mean
@@ -151,8 +152,12 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     fragments = 1
     travel = 0.0
     made = 0  # records
-    changed = False
+    # What is to be done at the top of the loop: everything at first; after contacts were made or broken, or monomers
+    # dropped; the near list only. Each function is called in one place, because the compiler copies it to each.
     renew = True
+    changed = False
+    stale = False
+    centred = -1  # step at which the origin was last put to the centre of mass
     code = PAUSED
 
     steps = counter[STEPS]
@@ -167,11 +172,14 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     while True:
         if renew or changed:
             link_contacts(body, counts)
-            if changed:
-                unwind = 0.0  # it was that of the old fragment
-                update_rates(body, timestep_factor, implicit_damping, buffer)
-                dt = scalar[DT]
+        if changed:
+            unwind = 0.0  # it was that of the old fragment
+            update_rates(body, timestep_factor, implicit_damping, buffer)
+            dt = scalar[DT]
+        if renew or changed or (steps % centre_every == 0 and steps != centred):
             fragments = find_fragments(body, buffer, counts)
+            centred = steps
+        if renew or changed or stale:
             if far_pairs < 0 or farthest_move(body, FAR_REFERENCE, buffer) > 0.5 * (far_reach - near_reach):
                 far_pairs = find_far(body, far_reach, counts)
                 if thread == 0:
@@ -181,8 +189,9 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
                     break
             pairs = find_near(body, far_pairs, near_reach, counts)
             travel = 0.0
-            renew = False
-            changed = False
+        renew = False
+        changed = False
+        stale = False
         if counter[LARGEST_CONTACTS] <= task[FEWEST]:
             code = FEW_CONTACTS
             break
@@ -202,6 +211,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             write_record(body, arena.row[grain, made], buffer)
             stress_sum = 0.0
             stress_samples = 0.0
+            smallest, mean = radii(body, buffer)  # of what is left
             made += 1
             continue
         if steps >= task[STEPS_GOAL]:
@@ -213,7 +223,6 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             code = FULL
             break
         if relaxing and steps % RELAXATION_STEPS == 0:
-            find_fragments(body, buffer, counts)
             if thread == 0:
                 counter[STEPS] = steps
                 scalar[OMEGA] = omega
@@ -222,8 +231,6 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
                 code = RESTED
                 break
 
-        if steps % CENTRE_EVERY == 0:
-            find_fragments(body, buffer, counts)
         ended = cuda.syncthreads_or(contact_pass(body, dt_drift, dt))
         if steps % STRESS_EVERY == 0:
             stress_sum += total_stress(body, buffer)
@@ -268,12 +275,8 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
                 if dropped:
                     changed = True
                     far_pairs = -1  # monomers have other numbers
-                elif farthest_move(body, FAR_REFERENCE, buffer) > 0.5 * (far_reach - near_reach):
-                    far_pairs = -1
-                    renew = True
                 else:
-                    pairs = find_near(body, far_pairs, near_reach, counts)
-                    travel = 0.0
+                    stale = True
         if fastest * dt > timestep_factor * smallest:
             dt = timestep_factor * smallest / fastest
 

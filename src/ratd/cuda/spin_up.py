@@ -30,9 +30,9 @@ __all__ = ["spin_up_many"]
 
 CHECKPOINT_INTERVAL = 120.0
 """Wall time [s] between two checkpoints."""
-SEGMENT = 2**27
+SEGMENT = 2**29
 """Length of a segment in contacts times steps."""
-STEP_OVERHEAD = 500
+STEP_OVERHEAD = 1500
 """What a step costs beside its contacts, in contacts: barriers, and what all threads do alike."""
 ROWS_PER_LAUNCH = 64
 """Records that a grain may make between two looks of the host."""
