@@ -1,5 +1,7 @@
 """The time loop of a grain, run by one thread block: see `ratd.engine.advance`, whose order of things it keeps."""
 
+import math
+
 import numpy as np
 
 from ratd.cuda.arena import (
@@ -21,7 +23,7 @@ from ratd.cuda.lists import (
     update_rates,
 )
 from ratd.cuda.measure import stored_kinetic_energy, total_stress, write_record
-from ratd.drives import Drive, angular_velocity, turning_step
+from ratd.drives import Drive, angular_velocity, turn_to_take_out, turning_step
 from ratd.engine.advance import (
     CENTRE_EVERY,
     FAR,
@@ -36,7 +38,7 @@ from ratd.engine.advance import (
 )
 from ratd.engine.contacts import append_contact, contact_start, remove_contact
 from ratd.engine.layout import (
-    COMPRESSION, CONTACTS, DT, DT_DRIFT, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW, SEARCHES, STEPS,
+    COMPRESSION, CONTACTS, DT, DT_DRIFT, EXCESS, LARGEST_CONTACTS, MONOMERS, OMEGA, RADIUS, ROW, SEARCHES, STEPS,
     STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, VX, WX,
 )  # fmt: skip
 from ratd.laws.jkr import COMPRESSION_END
@@ -165,6 +167,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     dt = scalar[DT]
     dt_drift = scalar[DT_DRIFT]
     unwind = scalar[UNWIND]
+    excess = scalar[EXCESS]
     work = scalar[TORQUE_WORK]
     stress_sum = scalar[STRESS_SUM]
     stress_samples = scalar[STRESS_SAMPLES]
@@ -173,7 +176,9 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
         if renew or changed:
             link_contacts(body, counts)
         if changed:
-            unwind = 0.0  # it was that of the old fragment
+            # They were those of the old fragment.
+            unwind = 0.0
+            excess = math.nan
             update_rates(body, timestep_factor, implicit_damping, buffer)
             dt = scalar[DT]
         if renew or changed or (steps % centre_every == 0 and steps != centred):
@@ -240,12 +245,14 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
         if law.torque:
             # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
             work += (domega * dt + unwind) * (inertia * omega + momentum)
-            unwind = -momentum / inertia
+            last_excess = excess
+            excess = momentum / inertia
+            unwind = turn_to_take_out(excess, last_excess, unwind)
         dt_drift = dt
         time += dt
         omega, domega = angular_velocity(law, time)
         steps += 1
-        if not fastest < np.inf:
+        if not (fastest < np.inf and abs(momentum) < np.inf):
             code = NOT_FINITE
             break
 
@@ -287,6 +294,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
         scalar[DT] = dt
         scalar[DT_DRIFT] = dt_drift
         scalar[UNWIND] = unwind
+        scalar[EXCESS] = excess
         scalar[TORQUE_WORK] = work
         scalar[STRESS_SUM] = stress_sum
         scalar[STRESS_SAMPLES] = stress_samples
