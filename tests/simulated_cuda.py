@@ -10,6 +10,7 @@ import xarray as xr
 
 import ratd
 from ratd import spinup
+from ratd.cuda import advance, arena, body
 from ratd.cuda import spin_up as cuda_spin_up
 from ratd.cuda.advance import PAUSED, advance_grains
 from ratd.cuda.arena import CODE, FEWEST, GOALS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive
@@ -205,8 +206,6 @@ def test_too_little_room_is_told_before_anything_moves():
     near = cpu_advance._near_pairs(state, all_pairs(state, 1.0), 1.0)
     assert len(near) > slots - contacts
     batch = Batch([tight], 2)
-    from ratd.cuda import advance
-
     keep = advance.NEAR, advance.FAR
     try:
         advance.NEAR, advance.FAR = 50.0, 60.0
@@ -396,6 +395,25 @@ def test_killed_runs_go_on_with_the_same_bits(grains, tmp_path, monkeypatch):
         xr.testing.assert_identical(found, expected)
     for number, found in kept.items():
         xr.testing.assert_identical(found, undisturbed[number])
+
+
+@pytest.mark.parametrize("per_slot", [1, 4])
+def test_a_grain_that_needs_more_room_gets_it(grains, monkeypatch, per_slot):
+    """All pairs of monomers count as near: at first there is no room for their list, or for contacts of all of them."""
+    many = grow("BAM1", 50e-9, "q-S", 0)
+    n = many.n_monomers
+    assert layout.LANES < n * (n - 1) // 2 < 2 * layout.LANES
+    monkeypatch.setattr(advance, "NEAR", 50.0)
+    monkeypatch.setattr(advance, "FAR", 60.0)
+    for module in (arena, body):
+        monkeypatch.setattr(module, "FAR_PER_SLOT", per_slot)
+    slots = []
+    with_room = cuda_spin_up.with_room
+    monkeypatch.setattr(cuda_spin_up, "with_room", lambda state, room: slots.append(room) or with_room(state, room))
+    found = spin_up_many([grains[1], many], max_steps=20, **FAST)
+    assert slots and set(slots) == {2 * layout.LANES}
+    for run, grain in zip(found, [grains[1], many], strict=True):
+        assert_same_run(run, spin_up(grain, max_steps=20, **FAST), 1e-8)
 
 
 def test_a_grain_that_fails_does_not_stop_the_others(grains, monkeypatch):
