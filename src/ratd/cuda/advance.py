@@ -216,8 +216,14 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             write_record(body, arena.row[grain, made], buffer)
             stress_sum = 0.0
             stress_samples = 0.0
-            smallest, mean = radii(body, buffer)  # of what is left
             made += 1
+            # Everything from anew, of what is left, as on the processor: when a fragment is seen to have left depends
+            # on when the list of near pairs was made.
+            renew = True
+            far_pairs = -1
+            smallest, mean = radii(body, buffer)
+            far_reach = FAR * mean
+            near_reach = NEAR * mean
             continue
         if steps >= task[STEPS_GOAL]:
             code = STEPS_DONE
