@@ -29,6 +29,7 @@ WRITES = {
     "spin_up_cuda": ("spinup",),
     "disrupt": ("disruption",),
     "ensemble": ("table", "cells", "fit"),
+    "composition": ("table1", "table2"),
 }
 """Kinds of files that the script of a rule writes."""
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import ensemble, marks, spinup
+from ratd import composition, ensemble, marks, spinup
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -265,6 +265,15 @@ _FIT = {
     ),
 }
 
+
+def _entries(columns):
+    """Variables of a printed table, one a column; text where it has no units."""
+    return {
+        name: Variable(("entry",), "f8" if units else "str", units, meaning, nan=bool(units))
+        for name, (units, meaning) in columns.items()
+    }
+
+
 KINDS = {
     "grains": Kind("Grains of monomers", _GRAINS, ("material", "type"), _GRAINS_RAGGED),
     "spinup": Kind("Spin-up of grains", _SPINUP, RUN_SETTINGS, _SPINUP_RAGGED),
@@ -272,6 +281,8 @@ KINDS = {
     "table": Kind("All grains of an ensemble", _TABLE),
     "cells": Kind("Grains of an ensemble, averaged per material, type and size", _CELLS),
     "fit": Kind("Fit of Eq. 33 to an ensemble, beside Table 3 of the paper", _FIT, ("drive",)),
+    "table1": Kind("Table 1: ratios of elements in co-S", _entries(composition.TABLE_1_COLUMNS)),
+    "table2": Kind("Table 2: properties of the materials", _entries(composition.TABLE_2_COLUMNS)),
 }
 """Kind of file -> its layout."""
 

@@ -39,6 +39,45 @@ rule ensemble:
         "../scripts/ensemble.py"
 
 
+# What the monomers are made of: nothing in the config decides it.
+rule composition:
+    output:
+        table1_nc="<results>/tables/table1.nc",
+        table1_csv=report(
+            "<results>/tables/table1.csv",
+            caption="../report/table1.rst",
+            category="Tables",
+            labels={"table": "Table 1", "drive": "none"},
+        ),
+        table1_md="<results>/tables/table1.md",
+        table2_nc="<results>/tables/table2.nc",
+        table2_csv=report(
+            "<results>/tables/table2.csv",
+            caption="../report/table2.rst",
+            category="Tables",
+            labels={"table": "Table 2", "drive": "none"},
+        ),
+        table2_md="<results>/tables/table2.md",
+    log:
+        "<results>/logs/tables/composition.log",
+    benchmark:
+        "<results>/benchmarks/tables/composition.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        code=CODE["composition"],
+        settings={},
+    message:
+        "Tables 1 and 2, what the monomers are made of"
+    script:
+        "../scripts/composition.py"
+
+
 rule tables:
     input:
+        expand("<results>/tables/table{number}.csv", number=[1, 2]),
         expand("<results>/ensemble/{drive}/table3.csv", drive=PLAN.config["drives"]),
