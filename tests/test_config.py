@@ -27,7 +27,7 @@ def test_default_is_the_full_paper():
     assert plan.config["materials"] == ["a-C", "q-S", "co-S"]
     assert plan.sizes == [str(size) for size in range(550, 0, -50)]
     assert plan.config["drives"] == ["prescribed"]
-    assert plan.figures == [2, 4, 6, 7]
+    assert plan.figures == [2, 4, 6, 7, 8]
 
 
 def test_quick_is_three_of_each():
@@ -71,6 +71,11 @@ def test_quick_is_three_of_each():
         ),
         ({"figures": {"figure4": {"size_nm": 75}}}, "figures.figure4.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure6": {"material": "ice"}}}, "figures.figure6.material is 'ice'", "a-C, q-S, co-S"),
+        (
+            {"figures": {"figure8": {"scaled_at_nm": 75}}},
+            "figures.figure8.scaled_at_nm is 75",
+            "one of the sizes_nm, 50",
+        ),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),
         ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
@@ -154,7 +159,7 @@ def test_snapshots_concern_the_block_of_the_grain_only():
 
 def test_a_figure_can_be_left_out():
     plan = with_changes({"figures": {"figure4": None}})
-    assert plan.figures == [2, 6, 7]
+    assert plan.figures == [2, 6, 7, 8]
     assert plan.figure4_files("{material}/{seeds}") == []
     assert load(DEFAULT).figure4_files("{material}/{size}/{seeds}")[0] == "q-S/350/0-9"
 

@@ -15,10 +15,12 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from ratd.bound import tensile_strength_tatsuuma2019
 from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
 from ratd.errors import InputError
-from ratd.figures import figure2, figure4, figure6, figure7, save
+from ratd.figures import figure2, figure4, figure6, figure7, figure8, save
 from ratd.figures.figure6 import axis_ratios
+from ratd.figures.figure8 import predictions
 from ratd.figures.style import (
     ONE_COLUMN,
     TWO_COLUMNS,
@@ -48,13 +50,14 @@ def cell_of_runs(n=6, drive="prescribed"):
 
 
 def full_figures():
-    """All four figures of an ensemble like the paper's, with fewer seeds."""
+    """All figures of an ensemble like the paper's, with fewer seeds."""
     table = make_table(seeds=2)
     return {
         "figure2": figure2(table),
         "figure4": figure4(cell_of_runs()),
         "figure6": figure6(table),
         "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
+        "figure8": figure8(table),
     }
 
 
@@ -79,6 +82,11 @@ def sparse_figures():
         "whole 6": figure6(whole, sizes=SIZES),
         "whole 7": figure7(whole),
         "unknown 2": figure2(unknown),
+        "quick 8": figure8(quick),
+        "one 8": figure8(one, "q-S", "BAM2", 100e-9),
+        "whole 8": figure8(whole),
+        "unknown 8": figure8(unknown),
+        "other size 8": figure8(make_table(sizes=PANEL_SIZES, seeds=2)),
         "no cell 6": figure6(quick, sizes=PANEL_SIZES),
         "new type 6": figure6(quick.assign(type="RA"), sizes=SIZES),
         "new type 7": figure7(quick.assign(type="RA")),
@@ -144,13 +152,19 @@ def test_texts_are_readable(figures, monkeypatch):
 def test_figures_are_as_wide_as_the_columns(figures):
     width = {name: figure.get_figwidth() for name, figure in figures.items()}
     assert {width["figure2"], width["figure6"], width["figure7"]} == {TWO_COLUMNS}
-    assert {width["figure4"], width["one 7"]} == {ONE_COLUMN}
+    assert {width["figure4"], width["one 7"], width["figure8"]} == {ONE_COLUMN}
 
 
 @pytest.mark.parametrize("drive", ["prescribed", "literal"])
 def test_each_figure_names_its_drive(drive):
     table = make_table(sizes=SIZES, seeds=2, drive=drive)
-    for figure in (figure2(table), figure4(cell_of_runs(2, drive)), figure6(table, sizes=SIZES), figure7(table)):
+    for figure in (
+        figure2(table),
+        figure4(cell_of_runs(2, drive)),
+        figure6(table, sizes=SIZES),
+        figure7(table),
+        figure8(table),
+    ):
         assert f"drive: {drive}" in figure.get_suptitle()
     assert "drive: mine" in figure2(table, drive="mine").get_suptitle()
 
@@ -267,6 +281,36 @@ def test_figure7_goes_without_a_fit():
     table = make_table(sizes=SIZES, seeds=2)
     n = [len(lines(figure7(table, fit).axes[0], linestyle="-")) for fit in (None, fit_ensemble(table, n_bootstrap=5))]
     assert n == [3, 6]  # the printed ones, and the fitted ones
+
+
+def test_figure8_scales_what_has_no_absolute_value():
+    table = make_table(("co-S",), ("BAM2",), seeds=4)
+    cells, material = cell_statistics(table), get_material("co-S")
+    curves, anchor = predictions(cells, material, 100e-9)
+    at = cells["a_eff"] == 100e-9
+    phi = cells["filling_factor_mean"]
+    for name, exponent in (("S13 low", 1.6), ("S13 high", 1.9), ("T19", 1.8)):
+        assert anchor[name] == 100e-9
+        np.testing.assert_allclose(curves[name][at], cells["omega_disr_mean"][at])
+        unit = curves[name] * cells["a_eff"] / phi ** (exponent / 2)  # omega ~ sqrt(S)/a_eff
+        np.testing.assert_allclose(unit, unit.iloc[0])
+    strength = tensile_strength_tatsuuma2019(
+        material.surface_energy, cells["mean_monomer_radius_mean"].to_numpy(), phi.to_numpy()
+    )
+    np.testing.assert_allclose(curves["absolute"], 2 / cells["a_eff"] * np.sqrt(strength / material.density))
+    panel = figure8(table).axes[0]
+    (black,) = lines(panel, color="#000000")
+    np.testing.assert_allclose(black.get_ydata(), curves["absolute"])
+
+
+def test_figure8_says_where_it_scales_instead():
+    table = make_table(("co-S",), ("BAM2",), (100e-9, 150e-9, 200e-9), 3)
+    table.loc[table["a_eff"] == 100e-9, "fractal_dimension"] = np.nan
+    _, anchor = predictions(cell_statistics(table), get_material("co-S"), 100e-9)
+    assert anchor["T19 fractal"] == 150e-9 and anchor["T19"] == 100e-9
+    assert words(figure8(table)).count("scaled at 150 nm") == 1
+    nothing, anchor = predictions(cell_statistics(table.assign(omega_disr=np.nan)), get_material("co-S"), 100e-9)
+    assert nothing["T19"].isna().all() and np.isnan(anchor["T19"]) and nothing["absolute"].notna().all()
 
 
 @pytest.mark.parametrize(

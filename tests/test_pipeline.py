@@ -30,11 +30,12 @@ TINY = {
     "figures": {
         "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
         "figure6": {"material": "q-S", "sizes_nm": [50]},
+        "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
     },
 }
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"
 RUNS = "results/tiny/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.nc"
-FIGURES = {"figure2", "figure4", "figure6", "figure7"}
+FIGURES = {"figure2", "figure4", "figure6", "figure7", "figure8"}
 
 
 class Pipeline:
@@ -132,7 +133,7 @@ def test_every_stage_leaves_its_files(finished):
     assert {GRAINS, RUNS, "results/tiny/config.yaml"} <= files
     assert "results/tiny/disruption/prescribed/q-S/BA/50nm.nc" in files
     assert {f"results/tiny/ensemble/prescribed/table3.{suffix}" for suffix in ("nc", "csv")} <= files
-    for number in (2, 4, 6, 7):
+    for number in (2, 4, 6, 7, 8):
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.pdf").read_bytes()[:5] == b"%PDF-"
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.png").read_bytes()[1:4] == b"PNG"
     assert not [name for name in files if ".partial" in name or name.endswith(".tmp")]
@@ -210,7 +211,7 @@ def test_change_of_a_script_reruns_its_stage_and_what_follows(copy_of, script, r
 @pytest.mark.parametrize(
     ("change", "rerun"),
     [
-        ({"figures": {"figure4": TINY["figures"]["figure4"], "figure6": None}}, set()),
+        ({"figures": TINY["figures"] | {"figure6": None}}, set()),
         ({"spin_up": {"epsilon": 0.3}}, {"spin_up", "disrupt", "ensemble"} | FIGURES),
         ({"ensemble": {"bootstrap": 30}}, {"ensemble"} | FIGURES - {"figure4"}),
         ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES),
@@ -288,7 +289,7 @@ def test_report_is_one_page_with_captions(finished, tmp_path):
     done = finished.run("--report", str(tmp_path / "report.html"))
     assert done.returncode == 0, done.stdout
     page = (tmp_path / "report.html").read_text()
-    for number in (2, 4, 6, 7):
+    for number in (2, 4, 6, 7, 8):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page

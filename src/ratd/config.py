@@ -252,6 +252,10 @@ def check(config, schemas="config/schema"):
         plan.find(figure6["material"], "materials", "figures.figure6.material")
         for k, size in enumerate(figure6["sizes_nm"]):
             plan.find(size, "sizes_nm", f"figures.figure6.sizes_nm[{k}]")
+    figure8 = config["figures"]["figure8"]
+    if figure8 is not None:
+        for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
+            plan.find(figure8[name], key, f"figures.figure8.{name}")
     return plan
 
 
@@ -322,7 +326,7 @@ class Plan:
     @property
     def figures(self):
         """Numbers of the figures to draw, list of int."""
-        return [number for number in (2, 4, 6, 7) if self.config["figures"].get(f"figure{number}", ()) is not None]
+        return [number for number in (2, 4, 6, 7, 8) if self.config["figures"].get(f"figure{number}", ()) is not None]
 
     def pattern(self, name):
         """Regular expression of what a wildcard of Snakemake can be.
@@ -431,8 +435,10 @@ class Plan:
         }
 
     def figure(self, number, drive):
-        """Settings of one figure; for figures 4 and 6 with their own part of the config, sizes in m."""
+        """Settings of one figure, with its own part of the config, sizes in m."""
         own = self.config["figures"].get(f"figure{number}") or {}
+        if "scaled_at_nm" in own:
+            own = own | {"scaled_at": own["scaled_at_nm"] * NM}
         if "sizes_nm" in own:
             own = own | {"sizes": [size * NM for size in own["sizes_nm"]]}
         materials = {name: self.material(name) for name in self.config["materials"]}

@@ -144,6 +144,41 @@ rule figure7:
         "../scripts/figure7.py"
 
 
+rule figure8:
+    input:
+        "<results>/ensemble/{drive}/grains.nc",
+    output:
+        pdf=report(
+            "<results>/figures/figure8_{drive}.pdf",
+            caption="../report/figure8.rst",
+            category="Figures",
+            labels={"figure": "8", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure8_{drive}.png",
+            caption="../report/figure8.rst",
+            category="Figures",
+            labels={"figure": "8", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure8_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure8_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure8"],
+        settings=lambda w: PLAN.figure(8, w.drive),
+    message:
+        "Draw figure 8, tensile strengths ({wildcards.drive})"
+    script:
+        "../scripts/figure8.py"
+
+
 rule figures:
     input:
         expand(

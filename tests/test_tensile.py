@@ -1,0 +1,35 @@
+"""Tensile strengths, and the angular velocity that follows from them."""
+
+import numpy as np
+import pytest
+
+from ratd.bound import midplane_tension
+from ratd.tensile import SCALINGS, eq27, fractal_exponent, tensile_strength_greenberg1995
+
+
+def test_eq27_balances_the_tension_at_the_mid_plane_of_a_solid_sphere():
+    omega = eq27(350e-9, 1e5, 2650.0)
+    assert midplane_tension(omega, 2650.0, 1.0, 350e-9) == pytest.approx(1e5)
+    np.testing.assert_allclose(eq27([1e-7, 2e-7], [1e5, 4e5], 2000.0), 2e7 * np.sqrt(50.0))
+
+
+def test_greenberg_by_hand_and_the_number_that_hoang_2019_quote():
+    """E = 1e-3 eV, h = 0.3 nm, a = 5 nm, <N_con> phi = 1: 3.2e4 J m-3."""
+    strength = tensile_strength_greenberg1995(2.0, 0.5, 1.602e-22, 5e-9, 0.3e-9)
+    assert strength == pytest.approx(1.5 * 1.602e-22 / (25e-18 * 0.3e-9)) and 3.1e4 < strength < 3.3e4
+
+
+def test_fractal_exponent():
+    np.testing.assert_allclose(fractal_exponent([1.0, 1.9, 2.5]), [1.0, 2 / 1.1, 4.0])
+    assert np.isnan(fractal_exponent([3.0, 3.2, np.nan])).all()
+
+
+def test_every_scaling_grows_with_the_filling_factor():
+    for name, (text, strength) in SCALINGS.items():
+        low, high = (strength(np.array([3.0]), np.array([phi]), np.array([2.4])) for phi in (0.3, 0.6))
+        assert (high > low).all() and text.startswith(name[:3])
+    exponents = {
+        name: np.log2(strength(1.0, 1.0, 2.0) / strength(1.0, 0.5, 2.0)) for name, (_, strength) in SCALINGS.items()
+    }
+    expected = {"G95": 1.0, "S13 low": 1.6, "S13 high": 1.9, "T19": 1.8, "T19 fractal": 2.0}
+    assert exponents == pytest.approx(expected)
