@@ -71,11 +71,8 @@ def test_quick_is_three_of_each():
         ),
         ({"figures": {"figure4": {"size_nm": 75}}}, "figures.figure4.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure6": {"material": "ice"}}}, "figures.figure6.material is 'ice'", "a-C, q-S, co-S"),
-        (
-            {"figures": {"figure8": {"scaled_at_nm": 75}}},
-            "figures.figure8.scaled_at_nm is 75",
-            "one of the sizes_nm, 50",
-        ),
+        ({"figures": {"figure8": {"scaled_at_nm": 75}}}, "figures.figure8.scaled_at_nm is 75", "the sizes_nm, 50"),
+        ({"figures": {"figure10": {"damped": {"epsilon": 2}}}}, "figures.figure10.damped.epsilon is 2", "at most 1"),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),
         ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
@@ -169,6 +166,9 @@ def test_sizes_stand_in_names_without_needless_digits(size, label):
     assert size_label(size) == label
 
 
+MATERIALS_OF_FIGURES = ("a-C", "q-S", "co-S")
+
+
 def materials_file(tmp_path, text):
     file = tmp_path / "materials.yaml"
     file.write_text(text)
@@ -178,7 +178,7 @@ def materials_file(tmp_path, text):
 def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
     ice = "ice: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
     half = "half: {mix: {ice: 0.5, q-S: 0.5}}\n"
-    plan = with_changes(materials_file(tmp_path, ice + half) | {"materials": ["ice", "half", "a-C", "q-S"]})
+    plan = with_changes(materials_file(tmp_path, ice + half) | {"materials": ["ice", "half", *MATERIALS_OF_FIGURES]})
     assert plan.material("ice")["youngs_modulus"] == pytest.approx(7e9)
     assert plan.material("ice")["viscous_time"] == MATERIALS["a-C"].viscous_time
     assert plan.material("half")["density"] == pytest.approx((1000 + 2650) / 2)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -18,7 +19,7 @@ from matplotlib.text import Text
 from ratd.bound import tensile_strength_tatsuuma2019
 from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
 from ratd.errors import InputError
-from ratd.figures import figure2, figure4, figure6, figure7, figure8, save
+from ratd.figures import figure2, figure4, figure6, figure7, figure8, figure10, save
 from ratd.figures.figure6 import axis_ratios
 from ratd.figures.figure8 import predictions
 from ratd.figures.style import (
@@ -34,6 +35,7 @@ from ratd.figures.style import (
 )
 from ratd.marks import disruption
 from ratd.materials import get_material
+from ratd.pair import force_controlled_omega
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 75e-9, 100e-9)
@@ -49,6 +51,21 @@ def cell_of_runs(n=6, drive="prescribed"):
     ]
 
 
+def made_up_pairs(materials=("a-C", "q-S", "co-S"), number=80):
+    """Pairs that part within 2 % of their reference."""
+    rng = np.random.default_rng(4)
+    rows = []
+    for name in materials:
+        for start, part in (("damped", 1.0), ("undamped", np.sqrt(5) / 3)):
+            for a in np.linspace(10e-9, 100e-9, number):
+                exact = force_controlled_omega(a, a, get_material(name))
+                rows.append(
+                    (name, start, a, part * exact * (1 + 0.02 * rng.uniform(-1, 1)), exact, exact * np.sqrt(5) / 3)
+                )
+    columns = ["material", "start", "monomer_radius", "parting_omega", "force_controlled_omega", "eq35_omega"]
+    return pd.DataFrame(rows, columns=columns).assign(epsilon=0.005, timestep_factor=0.05)
+
+
 def full_figures():
     """All figures of an ensemble like the paper's, with fewer seeds."""
     table = make_table(seeds=2)
@@ -58,6 +75,7 @@ def full_figures():
         "figure6": figure6(table),
         "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
         "figure8": figure8(table),
+        "figure10": figure10(made_up_pairs()),
     }
 
 
@@ -83,6 +101,7 @@ def sparse_figures():
         "whole 7": figure7(whole),
         "unknown 2": figure2(unknown),
         "quick 8": figure8(quick),
+        "one 10": figure10(made_up_pairs(("q-S",), 3)),
         "one 8": figure8(one, "q-S", "BAM2", 100e-9),
         "whole 8": figure8(whole),
         "unknown 8": figure8(unknown),
@@ -151,7 +170,7 @@ def test_texts_are_readable(figures, monkeypatch):
 
 def test_figures_are_as_wide_as_the_columns(figures):
     width = {name: figure.get_figwidth() for name, figure in figures.items()}
-    assert {width["figure2"], width["figure6"], width["figure7"]} == {TWO_COLUMNS}
+    assert {width["figure2"], width["figure6"], width["figure7"], width["figure10"]} == {TWO_COLUMNS}
     assert {width["figure4"], width["one 7"], width["figure8"]} == {ONE_COLUMN}
 
 

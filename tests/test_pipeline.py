@@ -31,11 +31,13 @@ TINY = {
         "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
         "figure6": {"material": "q-S", "sizes_nm": [50]},
         "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
+        "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
     },
 }
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"
 RUNS = "results/tiny/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.nc"
 FIGURES = {"figure2", "figure4", "figure6", "figure7", "figure8"}
+COMMON_FIGURES = {"figure10"}
 
 
 class Pipeline:

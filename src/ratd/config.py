@@ -325,8 +325,16 @@ class Plan:
 
     @property
     def figures(self):
-        """Numbers of the figures to draw, list of int."""
-        return [number for number in (2, 4, 6, 7, 8) if self.config["figures"].get(f"figure{number}", ()) is not None]
+        """Numbers of the figures to draw for each drive, list of int."""
+        return self._wanted(2, 4, 6, 7, 8)
+
+    @property
+    def common_figures(self):
+        """Numbers of the figures to draw that do not depend on the drive, list of int."""
+        return self._wanted(10)
+
+    def _wanted(self, *numbers):
+        return [number for number in numbers if self.config["figures"].get(f"figure{number}", ()) is not None]
 
     def pattern(self, name):
         """Regular expression of what a wildcard of Snakemake can be.
@@ -434,7 +442,17 @@ class Plan:
             "seed": ensemble["seed"],
         }
 
-    def figure(self, number, drive):
+    def pairs(self, material):
+        """Settings of the pairs of figure 10, for one material."""
+        own = self.config["figures"]["figure10"]
+        return {
+            "material": self.material(material),
+            "smallest": self.radii["smallest"],
+            "largest": self.radii["largest"],
+            **own,
+        }
+
+    def figure(self, number, drive=None):
         """Settings of one figure, with its own part of the config, sizes in m."""
         own = self.config["figures"].get(f"figure{number}") or {}
         if "scaled_at_nm" in own:

@@ -30,6 +30,7 @@ WRITES = {
     "disrupt": ("disruption",),
     "ensemble": ("table", "cells", "fit"),
     "composition": ("table1", "table2"),
+    "pairs": ("pairs",),
 }
 """Kinds of files that the script of a rule writes."""
 

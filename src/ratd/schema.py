@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import composition, ensemble, marks, spinup
+from ratd import composition, ensemble, marks, pair, spinup
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -267,7 +267,7 @@ _FIT = {
 
 
 def _entries(columns):
-    """Variables of a printed table, one a column; text where it has no units."""
+    """Variables of a table that is no ensemble of grains, one a column; text where it has no units."""
     return {
         name: Variable(("entry",), "f8" if units else "str", units, meaning, nan=bool(units))
         for name, (units, meaning) in columns.items()
@@ -283,6 +283,7 @@ KINDS = {
     "fit": Kind("Fit of Eq. 33 to an ensemble, beside Table 3 of the paper", _FIT, ("drive",)),
     "table1": Kind("Table 1: ratios of elements in co-S", _entries(composition.TABLE_1_COLUMNS)),
     "table2": Kind("Table 2: properties of the materials", _entries(composition.TABLE_2_COLUMNS)),
+    "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
 }
 """Kind of file -> its layout."""
 

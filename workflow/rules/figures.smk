@@ -179,11 +179,73 @@ rule figure8:
         "../scripts/figure8.py"
 
 
+rule pairs:
+    output:
+        "<results>/pairs/{material}.nc",
+    log:
+        "<results>/logs/pairs/{material}.log",
+    benchmark:
+        "<results>/benchmarks/pairs/{material}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=60,
+    params:
+        code=CODE["pairs"],
+        settings=lambda w: PLAN.pairs(w.material),
+    message:
+        "Spin up pairs of {wildcards.material} monomers"
+    script:
+        "../scripts/pairs.py"
+
+
+rule figure10:
+    input:
+        expand("<results>/pairs/{material}.nc", material=PLAN.config["materials"]),
+    output:
+        pdf=report(
+            "<results>/figures/figure10.pdf",
+            caption="../report/figure10.rst",
+            category="Figures",
+            labels={"figure": "10", "drive": "prescribed", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure10.png",
+            caption="../report/figure10.rst",
+            category="Figures",
+            labels={"figure": "10", "drive": "prescribed", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure10.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure10.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure10"],
+        settings=PLAN.figure(10),
+    message:
+        "Draw figure 10, pairs that part"
+    script:
+        "../scripts/figure10.py"
+
+
 rule figures:
     input:
         expand(
             "<results>/figures/figure{number}_{drive}.{format}",
             number=PLAN.figures,
             drive=PLAN.config["drives"],
+            format=["pdf", "png"],
+        ),
+        expand(
+            "<results>/figures/figure{number}.{format}",
+            number=PLAN.common_figures,
             format=["pdf", "png"],
         ),

@@ -5,6 +5,7 @@ from ratd.figures.figure4 import figure4
 from ratd.figures.figure6 import figure6
 from ratd.figures.figure7 import figure7
 from ratd.figures.figure8 import figure8
+from ratd.figures.figure10 import figure10
 from ratd.figures.style import save
 
-__all__ = ["figure2", "figure4", "figure6", "figure7", "figure8", "save"]
+__all__ = ["figure10", "figure2", "figure4", "figure6", "figure7", "figure8", "save"]

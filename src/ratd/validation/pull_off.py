@@ -5,17 +5,13 @@ vibrating, and parts where its vibration reaches the top of the barrier: see `ra
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from ratd.drives import make_drive
-from ratd.engine.advance import FEW_CONTACTS, advance
-from ratd.engine.layout import OMEGA
-from ratd.engine.state import new_state
-from ratd.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.materials import get_material
+from ratd.pair import eq35_omega, force_controlled_omega, parting_omega
 from ratd.validation.tables import table_kind
-from ratd.validation.vibrating_pair import Pair, adiabatic_omega, vibrating_omega
+from ratd.validation.vibrating_pair import adiabatic_omega, vibrating_omega
 
 COLUMNS = {
     "material": ("", "material"),
@@ -33,58 +29,7 @@ COLUMNS = {
 }
 KIND = table_kind("pull_off", "Pairs of monomers that part", COLUMNS)
 SMALLEST, LARGEST = 10e-9, 100e-9
-PIECES = 200
 STEP_STUDY_RADIUS = 40e-9
-
-
-def force_controlled_omega(a_1, a_2, material):
-    """omega [rad/s] at which the centrifugal force on a pair is the pull-off force.
-
-    m_red omega^2 (a_1 + a_2) = 3 pi gamma R (docs/model.md); for equal monomers sqrt(3 pi gamma/(2 m)).
-    """
-    return Pair.of(a_1, a_2, material).force_controlled_omega
-
-
-def eq35_omega(a_1, a_2, material):
-    """omega [rad/s] of Eq. 35, which takes the force at the end of the branch, 5/9 of the pull-off force."""
-    return math.sqrt(5.0 / 9.0) * force_controlled_omega(a_1, a_2, material)
-
-
-def parting_omega(a_1, a_2, material, *, epsilon, timestep_factor, damped=True):
-    """omega [rad/s] at which a simulated pair parts.
-
-    Parameters
-    ----------
-    a_1, a_2 : float
-        Radii [m].
-    material : ratd.Material
-    epsilon : float
-        (d omega/dt)/omega^2; omega grows linearly up to half of `force_controlled_omega`.
-    timestep_factor : float
-        f of Eq. 31.
-    damped : bool
-        From equilibrium and with damping; or from first touch, delta = 0, without, so that the pair vibrates.
-
-    Returns
-    -------
-    float
-    """
-    if not damped:
-        material = replace(material, viscous_time=0.0)
-    expected = force_controlled_omega(a_1, a_2, material)
-    overlap = 0.0
-    if damped:
-        overlap = equilibrium_compression(reduced_radius(a_1, a_2), material.surface_energy, material.reduced_modulus)
-    distance = a_1 + a_2 - overlap
-    share = a_2**3 / (a_1**3 + a_2**3)
-    position = np.array([[-share * distance, 0.0, 0.0], [(1.0 - share) * distance, 0.0, 0.0]])
-    state = new_state(position, np.array([a_1, a_2]), material, np.array([[0, 1]]), timestep_factor=timestep_factor)
-    motion = make_drive("prescribed", omega_1=0.5 * expected, epsilon=epsilon)
-    # Piece by piece, as in a spin-up: each call puts the origin back into the centre of mass.
-    for goal in np.arange(1, 3 * PIECES) * expected / PIECES:
-        if advance(state, motion, goal, np.iinfo(np.int64).max, 0, timestep_factor, True) == FEW_CONTACTS:
-            return float(state.scalar[OMEGA])
-    return math.nan
 
 
 def compute(settings, progress=None):

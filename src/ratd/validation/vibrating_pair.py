@@ -23,6 +23,7 @@ from ratd.laws.jkr import (
     normal_potential,
 )
 from ratd.materials import equilibrium_compression, pull_off_force, reduced_radius
+from ratd.pair import holding_omega
 
 S_GREATEST = 5.0
 """Above any s = sqrt(r/r0) that a pair from first touch reaches."""
@@ -64,7 +65,7 @@ class Pair:
     @property
     def force_controlled_omega(self):
         """omega [rad/s] at which the centrifugal force at r = a_1 + a_2 is F_C: m_red omega^2 (a_1 + a_2) = F_C."""
-        return math.sqrt(self.pull_off_force / (self.reduced_mass * self.contact_distance))
+        return holding_omega(self.pull_off_force, self.reduced_mass, self.contact_distance)
 
     def distance(self, s):
         """r [m] at s = sqrt(contact radius/r0)."""
@@ -134,7 +135,7 @@ def adiabatic_omega(a_1, a_2, material):
 
     # From nearly no rotation to where the contact just holds a pair at rest. The latter is a little below
     # `force_controlled_omega`, since the pair is longer there.
-    most = math.sqrt(pair.pull_off_force / (pair.reduced_mass * pair.distance(S_PULL_OFF)))
+    most = holding_omega(pair.pull_off_force, pair.reduced_mass, pair.distance(S_PULL_OFF))
     return brentq(excess, 0.01 * most, 0.999 * most, rtol=1e-12)
 
 

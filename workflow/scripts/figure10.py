@@ -1,0 +1,11 @@
+"""Draw figure 10."""
+
+import pandas as pd
+
+from ratd import io
+from ratd.figures import figure10, save
+from ratd.jobs import Job
+
+with Job(snakemake) as job:
+    table = pd.concat([io.read(path, "pairs").to_dataframe() for path in snakemake.input], ignore_index=True)
+    save(figure10(table), *snakemake.output)

@@ -1,0 +1,15 @@
+"""Spin up pairs of equal monomers of one material."""
+
+import pandas as pd
+
+from ratd import io
+from ratd.jobs import Job
+from ratd.materials import Material
+from ratd.pair import pairs
+
+with Job(snakemake) as job:
+    settings = dict(job.settings)
+    material = Material(**settings.pop("material"))
+    table = pd.DataFrame(pairs(material, **settings, progress=job.log.info))
+    dataset = table.rename_axis("entry").to_xarray().drop_vars("entry")
+    io.write(snakemake.output[0], dataset.assign_attrs(job.provenance), "pairs")
