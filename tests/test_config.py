@@ -27,7 +27,7 @@ def test_default_is_the_full_paper():
     assert plan.config["materials"] == ["a-C", "q-S", "co-S"]
     assert plan.sizes == [str(size) for size in range(550, 0, -50)]
     assert plan.config["drives"] == ["prescribed"]
-    assert plan.figures == [2, 4, 6, 7, 8]
+    assert plan.figures == [2, 4, 5, 6, 7, 8] and plan.common_figures == [1, 10]
 
 
 def test_quick_is_three_of_each():
@@ -71,6 +71,8 @@ def test_quick_is_three_of_each():
         ),
         ({"figures": {"figure4": {"size_nm": 75}}}, "figures.figure4.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure6": {"material": "ice"}}}, "figures.figure6.material is 'ice'", "a-C, q-S, co-S"),
+        ({"figures": {"figure5": {"seed": 3}}}, "figures.figure5 is", "one of snapshots.grains"),
+        ({"figures": {"figure1": {"seed": 99}}}, "figures.figure1.seed is 99", "0 to 29"),
         ({"figures": {"figure8": {"scaled_at_nm": 75}}}, "figures.figure8.scaled_at_nm is 75", "the sizes_nm, 50"),
         ({"figures": {"figure10": {"damped": {"epsilon": 2}}}}, "figures.figure10.damped.epsilon is 2", "at most 1"),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
@@ -113,9 +115,18 @@ def test_later_files_stand_over_earlier_ones_key_by_key():
 
 
 def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added():
-    plan = with_changes({"seeds": {"first": 5, "number": 7}, "block_size": 3, "snapshots": {"grains": []}})
+    plan = with_changes(
+        {"seeds": {"first": 5, "number": 7}, "block_size": 3, "snapshots": {"grains": []}, "figures": {"figure5": None}}
+    )
     assert plan.blocks == ["5-7", "8-10", "11-11"]
-    more = with_changes({"seeds": {"first": 5, "number": 12}, "block_size": 3, "snapshots": {"grains": []}})
+    more = with_changes(
+        {
+            "seeds": {"first": 5, "number": 12},
+            "block_size": 3,
+            "snapshots": {"grains": []},
+            "figures": {"figure5": None},
+        }
+    )
     assert more.blocks[:2] == plan.blocks[:2]
     assert with_changes({"block_size": 1}).blocks[-1] == "29-29"
     assert with_changes({"block_size": 100}).blocks == ["0-29"]
@@ -156,7 +167,7 @@ def test_snapshots_concern_the_block_of_the_grain_only():
 
 def test_a_figure_can_be_left_out():
     plan = with_changes({"figures": {"figure4": None}})
-    assert plan.figures == [2, 6, 7, 8]
+    assert plan.figures == [2, 5, 6, 7, 8]
     assert plan.figure4_files("{material}/{seeds}") == []
     assert load(DEFAULT).figure4_files("{material}/{size}/{seeds}")[0] == "q-S/350/0-9"
 

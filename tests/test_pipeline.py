@@ -28,7 +28,9 @@ TINY = {
     "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
     "ensemble": {"bootstrap": 20},
     "figures": {
+        "figure1": {"sizes_nm": [50]},
         "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
+        "figure5": {"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1},
         "figure6": {"material": "q-S", "sizes_nm": [50]},
         "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
         "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
@@ -36,8 +38,9 @@ TINY = {
 }
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"
 RUNS = "results/tiny/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.nc"
-FIGURES = {"figure2", "figure4", "figure6", "figure7", "figure8"}
-COMMON_FIGURES = {"figure10"}
+FIGURES = {"figure2", "figure4", "figure5", "figure6", "figure7", "figure8"}
+COMMON_FIGURES = {"figure1", "figure10"}
+OF_RUNS = {"figure4", "figure5"}
 
 
 class Pipeline:
@@ -135,7 +138,7 @@ def test_every_stage_leaves_its_files(finished):
     assert {GRAINS, RUNS, "results/tiny/config.yaml"} <= files
     assert "results/tiny/disruption/prescribed/q-S/BA/50nm.nc" in files
     assert {f"results/tiny/ensemble/prescribed/table3.{suffix}" for suffix in ("nc", "csv")} <= files
-    for number in (2, 4, 6, 7, 8):
+    for number in (2, 4, 5, 6, 7, 8):
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.pdf").read_bytes()[:5] == b"%PDF-"
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.png").read_bytes()[1:4] == b"PNG"
     assert not [name for name in files if ".partial" in name or name.endswith(".tmp")]
@@ -178,7 +181,7 @@ def test_change_of_a_plotting_function_reruns_figures_only(copy_of):
     before = copy_of.files()
     style = copy_of.own_source() / "figures" / "style.py"
     style.write_text(re.sub(r'"axes.linewidth": [0-9.]+', '"axes.linewidth": 1.5', style.read_text()))
-    assert set(copy_of.planned()) == FIGURES
+    assert set(copy_of.planned()) == FIGURES | COMMON_FIGURES
     done = copy_of.run()
     assert done.returncode == 0, done.stdout
     after = copy_of.files()
@@ -190,19 +193,19 @@ def test_change_of_the_contact_law_reruns_spin_ups_and_what_follows(copy_of):
     law = next((copy_of.own_source() / "laws").glob("jkr*.py"))
     law.write_text(law.read_text() + "\nNEW_CONSTANT = 1.0\n")
     planned = copy_of.planned()
-    assert set(planned) == {"spin_up", "disrupt", "ensemble"} | FIGURES
+    assert set(planned) == {"spin_up", "disrupt", "ensemble", "pairs", "figure10"} | FIGURES
     assert planned["spin_up"] == 2
 
 
 def test_change_of_the_growth_reruns_everything(copy_of):
     growth = copy_of.own_source() / "growth.py"
     growth.write_text(growth.read_text() + "\nNEW_CONSTANT = 1.0\n")
-    assert set(copy_of.planned()) == {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES
+    assert set(copy_of.planned()) == {"grow", "spin_up", "disrupt", "ensemble", "figure1"} | FIGURES
 
 
 @pytest.mark.parametrize(
     ("script", "rerun"),
-    [("disrupt", {"disrupt", "ensemble"} | FIGURES - {"figure4"}), ("figure6", {"figure6"})],
+    [("disrupt", {"disrupt", "ensemble"} | FIGURES - OF_RUNS), ("figure6", {"figure6"})],
 )
 def test_change_of_a_script_reruns_its_stage_and_what_follows(copy_of, script, rerun):
     path = copy_of.folder / "workflow" / "scripts" / f"{script}.py"
@@ -215,8 +218,8 @@ def test_change_of_a_script_reruns_its_stage_and_what_follows(copy_of, script, r
     [
         ({"figures": TINY["figures"] | {"figure6": None}}, set()),
         ({"spin_up": {"epsilon": 0.3}}, {"spin_up", "disrupt", "ensemble"} | FIGURES),
-        ({"ensemble": {"bootstrap": 30}}, {"ensemble"} | FIGURES - {"figure4"}),
-        ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES),
+        ({"ensemble": {"bootstrap": 30}}, {"ensemble"} | FIGURES - OF_RUNS),
+        ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble", "figure1"} | FIGURES),
     ],
 )
 def test_change_of_the_config_reruns_what_depends_on_it(copy_of, change, rerun):
@@ -291,7 +294,7 @@ def test_report_is_one_page_with_captions(finished, tmp_path):
     done = finished.run("--report", str(tmp_path / "report.html"))
     assert done.returncode == 0, done.stdout
     page = (tmp_path / "report.html").read_text()
-    for number in (2, 4, 6, 7, 8):
+    for number in (2, 4, 5, 6, 7, 8):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page

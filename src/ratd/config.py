@@ -252,7 +252,17 @@ def check(config, schemas="config/schema"):
         plan.find(figure6["material"], "materials", "figures.figure6.material")
         for k, size in enumerate(figure6["sizes_nm"]):
             plan.find(size, "sizes_nm", f"figures.figure6.sizes_nm[{k}]")
-    figure8 = config["figures"]["figure8"]
+    figure1, figure5, figure8 = (config["figures"][f"figure{number}"] for number in (1, 5, 8))
+    if figure1 is not None:
+        plan.find(figure1["material"], "materials", "figures.figure1.material")
+        for k, size in enumerate(figure1["sizes_nm"]):
+            plan.find(size, "sizes_nm", f"figures.figure1.sizes_nm[{k}]")
+        if figure1["seed"] not in plan.seeds:
+            raise InputError(
+                f"config: figures.figure1.seed is {figure1['seed']}; allowed: {plan.seeds[0]} to {plan.seeds[-1]}"
+            )
+    if figure5 is not None and figure5 not in config["snapshots"]["grains"]:
+        raise InputError(f"config: figures.figure5 is {figure5}; allowed: one of snapshots.grains, or null")
     if figure8 is not None:
         for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
             plan.find(figure8[name], key, f"figures.figure8.{name}")
@@ -326,12 +336,12 @@ class Plan:
     @property
     def figures(self):
         """Numbers of the figures to draw for each drive, list of int."""
-        return self._wanted(2, 4, 6, 7, 8)
+        return self._wanted(2, 4, 5, 6, 7, 8)
 
     @property
     def common_figures(self):
         """Numbers of the figures to draw that do not depend on the drive, list of int."""
-        return self._wanted(10)
+        return self._wanted(1, 10)
 
     def _wanted(self, *numbers):
         return [number for number in numbers if self.config["figures"].get(f"figure{number}", ()) is not None]
@@ -369,6 +379,30 @@ class Plan:
             return []
         names = {"material": cell["material"], "type": cell["type"], "size": size_label(cell["size_nm"])}
         return [path.format(**names, seeds=block) for block in self.blocks]
+
+    def block_of(self, seed):
+        """The block of a seed, as in `blocks`."""
+        return self.blocks[(seed - self.seeds[0]) // self.config["block_size"]]
+
+    def figure1_files(self, path):
+        """Files with the grains that figure 1 shows, see `figure4_files`."""
+        own = self.config["figures"]["figure1"]
+        if own is None:
+            return []
+        block = self.block_of(own["seed"])
+        return [
+            path.format(material=own["material"], type=kind, size=size_label(size), seeds=block)
+            for kind in self.config["types"]
+            for size in own["sizes_nm"]
+        ]
+
+    def figure5_files(self, path):
+        """File with the run that figure 5 shows, in a list, see `figure4_files`."""
+        own = self.config["figures"]["figure5"]
+        if own is None:
+            return []
+        names = {"material": own["material"], "type": own["type"], "size": size_label(own["size_nm"])}
+        return [path.format(**names, seeds=self.block_of(own["seed"]))]
 
     @property
     def radii(self):

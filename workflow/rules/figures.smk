@@ -1,6 +1,43 @@
 # Figures of the paper, PDF for print and PNG for the screen.
 
 
+rule figure1:
+    input:
+        PLAN.figure1_files(
+            "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        ),
+    output:
+        pdf=report(
+            "<results>/figures/figure1.pdf",
+            caption="../report/figure1.rst",
+            category="Figures",
+            labels={"figure": "1", "drive": "none", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure1.png",
+            caption="../report/figure1.rst",
+            category="Figures",
+            labels={"figure": "1", "drive": "none", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure1.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure1.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure1"],
+        settings=PLAN.figure(1),
+    message:
+        "Draw figure 1, what the grains look like"
+    script:
+        "../scripts/figure1.py"
+
+
 rule figure2:
     input:
         "<results>/ensemble/{drive}/grains.nc",
@@ -71,6 +108,43 @@ rule figure4:
         "Draw figure 4, one cell coming apart ({wildcards.drive})"
     script:
         "../scripts/figure4.py"
+
+
+rule figure5:
+    input:
+        PLAN.figure5_files(
+            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        ),
+    output:
+        pdf=report(
+            "<results>/figures/figure5_{drive}.pdf",
+            caption="../report/figure5.rst",
+            category="Figures",
+            labels={"figure": "5", "drive": "{drive}", "format": "PDF"},
+        ),
+        png=report(
+            "<results>/figures/figure5_{drive}.png",
+            caption="../report/figure5.rst",
+            category="Figures",
+            labels={"figure": "5", "drive": "{drive}", "format": "PNG"},
+        ),
+    log:
+        "<results>/logs/figures/figure5_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/figure5_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["figure5"],
+        settings=lambda w: PLAN.figure(5, w.drive),
+    message:
+        "Draw figure 5, one grain coming apart ({wildcards.drive})"
+    script:
+        "../scripts/figure5.py"
 
 
 rule figure6:

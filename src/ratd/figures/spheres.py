@@ -1,0 +1,119 @@
+"""Shaded pictures of spheres, seen from infinitely far away.
+
+Drawn pixel by pixel with a depth buffer, in NumPy alone: a picture needs no display, no graphics library of the system
+and no graphics card, and its bytes are the same on every machine.
+"""
+
+import numpy as np
+
+LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
+"""Direction towards the light: from the upper left, on the side of the viewer."""
+AMBIENT = 0.40
+"""Brightness of a surface that the light does not reach."""
+FADE = 0.35
+"""Loss of brightness from the nearest to the farthest sphere, which tells depth."""
+EDGE = 0.30
+"""Cosine of the angle of view below which a sphere is darkened, so that each stands out from those behind."""
+SUPERSAMPLING = 3
+"""Pixels are drawn this many times finer along each axis and averaged."""
+
+
+def view_axes(forward, up):
+    """Axes of a picture: right, up, and towards the viewer.
+
+    Parameters
+    ----------
+    forward : (3,) array_like
+        Direction towards the viewer.
+    up : (3,) array_like
+        Direction that points upwards in the picture, not along `forward`.
+
+    Returns
+    -------
+    (3, 3) numpy.ndarray
+        Unit vectors as rows, right-handed; `position @ view_axes(...).T` are coordinates in the picture.
+    """
+    forward = np.asarray(forward, dtype=float) / np.linalg.norm(forward)
+    right = np.cross(up, forward)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(forward, right), forward])
+
+
+def render(position, radius, colour, half_width, pixels=360):
+    """Picture of spheres.
+
+    Parameters
+    ----------
+    position : (n, 3) array_like
+        Centres in the coordinates of the picture: right, up, towards the viewer [m].
+    radius : (n,) array_like
+        Radii [m].
+    colour : (n, 3) array_like
+        Red, green, blue of each sphere, 0 to 1.
+    half_width : float
+        The picture shows -half_width to half_width along both axes [m].
+    pixels : int
+        Width and height.
+
+    Returns
+    -------
+    (pixels, pixels, 4) numpy.ndarray of uint8
+        Red, green, blue, opacity; the first row is at the top. Where there is no sphere the picture is transparent.
+    """
+    position, radius, colour = (np.asarray(values, dtype=float) for values in (position, radius, colour))
+    fine = SUPERSAMPLING * pixels
+    centre = ((np.arange(fine) + 0.5) / fine * 2 - 1) * half_width  # of each fine pixel
+    depth = np.full((fine, fine), -np.inf)  # row 0 at the bottom
+    shade = np.zeros((fine, fine))
+    owner = np.full((fine, fine), -1)
+    for k in range(len(radius)):
+        (x, y, z), a = position[k], radius[k]
+        columns = slice(*np.searchsorted(centre, [x - a, x + a]))
+        rows = slice(*np.searchsorted(centre, [y - a, y + a]))
+        nx = (centre[columns] - x)[None, :] / a
+        ny = (centre[rows] - y)[:, None] / a
+        square = 1.0 - nx**2 - ny**2
+        nz = np.sqrt(np.maximum(square, 0.0))
+        front = (square > 0) & (z + a * nz > depth[rows, columns])
+        light = np.maximum(0.0, nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2])
+        bright = (AMBIENT + (1 - AMBIENT) * light) * np.minimum(1.0, 0.45 + 0.55 * nz / EDGE)
+        depth[rows, columns] = np.where(front, z + a * nz, depth[rows, columns])
+        shade[rows, columns] = np.where(front, bright, shade[rows, columns])
+        owner[rows, columns] = np.where(front, k, owner[rows, columns])
+    covered = owner >= 0
+    picture = np.zeros((fine, fine, 4))
+    if covered.any():
+        near, far = depth[covered].max(), depth[covered].min()
+        fade = 1 - FADE * (near - depth[covered]) / max(near - far, np.finfo(float).tiny)
+        picture[covered, :3] = colour[owner[covered]] * (shade[covered] * fade)[:, None]
+        picture[covered, 3] = 1.0
+    blocks = picture[::-1].reshape(pixels, SUPERSAMPLING, pixels, SUPERSAMPLING, 4).mean(axis=(1, 3))
+    opacity = blocks[..., 3:]
+    np.divide(blocks[..., :3], opacity, out=blocks[..., :3], where=opacity > 0)
+    return np.rint(255 * np.clip(blocks, 0, 1)).astype(np.uint8)
+
+
+def show(axes, picture, half_width):
+    """Put a picture into a panel with axes in nm, without frame, and draw a scale bar.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    picture : numpy.ndarray
+        From `render`.
+    half_width : float
+        As in `render` [m].
+    """
+    edge = half_width * 1e9
+    axes.imshow(picture, extent=(-edge, edge, -edge, edge), interpolation="antialiased", zorder=2)
+    axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
+    axes.set_axis_off()
+    length = scale_length(0.7 * edge)
+    axes.plot([0.95 * edge - length, 0.95 * edge], [-0.97 * edge] * 2, color="black", lw=1.6, zorder=3)
+    axes.text(0.95 * edge - 0.5 * length, -0.93 * edge, f"{length:g} nm", ha="center", va="bottom", zorder=3)
+
+
+def scale_length(greatest):
+    """Greatest of 1, 2, 5, 10, 20, ... that is not above a number."""
+    power = 10.0 ** np.floor(np.log10(greatest))
+    return float(max(m * power for m in (1, 2, 5) if m * power <= greatest * (1 + 1e-9)))

@@ -1,0 +1,9 @@
+"""Draw figure 1."""
+
+from ratd import io
+from ratd.figures import figure1, save
+from ratd.jobs import Job
+
+with Job(snakemake) as job:
+    grains = [grain for path in snakemake.input for grain in io.read_grains(path)]
+    save(figure1([grain for grain in grains if grain.seed == job.settings["seed"]]), *snakemake.output)

@@ -1,0 +1,9 @@
+"""Draw figure 5."""
+
+from ratd import io
+from ratd.figures import figure5, save
+from ratd.jobs import Job
+
+with Job(snakemake) as job:
+    runs = {run.attrs["seed"]: run for run in io.read_runs(snakemake.input[0])}
+    save(figure5(runs[job.settings["seed"]], drive=job.settings["drive"]), *snakemake.output)
