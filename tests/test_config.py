@@ -116,7 +116,12 @@ def test_later_files_stand_over_earlier_ones_key_by_key():
 
 def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added():
     plan = with_changes(
-        {"seeds": {"first": 5, "number": 7}, "block_size": 3, "snapshots": {"grains": []}, "figures": {"figure5": None}}
+        {
+            "seeds": {"first": 5, "number": 7},
+            "block_size": 3,
+            "snapshots": {"grains": []},
+            "figures": {"figure1": None, "figure5": None},
+        }
     )
     assert plan.blocks == ["5-7", "8-10", "11-11"]
     more = with_changes(
@@ -124,7 +129,7 @@ def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added(
             "seeds": {"first": 5, "number": 12},
             "block_size": 3,
             "snapshots": {"grains": []},
-            "figures": {"figure5": None},
+            "figures": {"figure1": None, "figure5": None},
         }
     )
     assert more.blocks[:2] == plan.blocks[:2]

@@ -1,0 +1,93 @@
+"""Pictures of spheres, and figures 1 and 5 that are made of them."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+
+from ratd.errors import InputError
+from ratd.figures.figure1 import figure1
+from ratd.figures.figure5 import LARGEST, figure5, fragment_colours, nearest_snapshots
+from ratd.figures.spheres import render, scale_length, view_axes
+from ratd.grain import Grain
+from synthetic_runs import make_run
+
+
+def test_a_sphere_covers_its_disc_and_nothing_else():
+    picture = render([[0.25, -0.5, 0]], [0.25], [[1, 1, 1]], 1.0, 200)
+    centre = (np.arange(200) + 0.5) / 100 - 1
+    y, x = np.meshgrid(-centre, centre, indexing="ij")
+    distance = np.hypot(x - 0.25, y + 0.5)
+    assert (picture[distance < 0.24, 3] == 255).all() and (picture[distance > 0.26, 3] == 0).all()
+    assert picture[..., 3].mean() / 255 == pytest.approx(np.pi * 0.25**2 / 4, rel=0.005)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_the_nearer_sphere_hides_the_farther_one(order):
+    position, colour = np.array([[0, 0, 1.0], [0, 0, -1.0]]), np.array([[1.0, 0, 0], [0, 0, 1.0]])
+    picture = (
+        render(position[list(order)], [0.2, 0.6], colour[list(order)], 1.0, 101)
+        if order == (0, 1)
+        else (render(position[::-1], [0.6, 0.2], colour[::-1], 1.0, 101))
+    )
+    assert picture[50, 50, 0] > 0 and picture[50, 50, 2] == 0
+    assert picture[50, 70, 2] > 0 and picture[50, 70, 0] == 0
+
+
+def test_view_axes_are_right_handed_with_up_upwards():
+    axes = view_axes((0.3, 0.5, 1.0), (1, 0, 0))
+    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-15)
+    assert (
+        np.linalg.det(axes) == pytest.approx(1) and axes[1] @ (1, 0, 0) > 0 and axes[0] @ (1, 0, 0) == pytest.approx(0)
+    )
+
+
+@pytest.mark.parametrize(("greatest", "length"), [(1.0, 1), (199.0, 100), (200.0, 200), (730.0, 500)])
+def test_scale_bars_have_round_lengths(greatest, length):
+    assert scale_length(greatest) == length
+
+
+def test_the_largest_fragment_is_blue_and_neighbours_differ():
+    colours = fragment_colours([0, 1, 2, 0])
+    np.testing.assert_allclose(colours[[0, 3]], [to_rgb(LARGEST)] * 2)
+    assert len(np.unique(colours, axis=0)) == 3
+
+
+def words(figure):
+    return " | ".join(text.get_text() for text in figure.findobj(Text))
+
+
+def test_figure1_names_each_grain_and_its_numbers():
+    grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S", type="BA", seed=3)
+    text = words(figure1([grain]))
+    assert "BA" in text and r"$N_\mathrm{con}$ = 1" in text and "seed 3" in text and "40.0 nm" in text
+    with pytest.raises(InputError, match="no two of the same"):
+        figure1([grain, grain])
+
+
+def run_with_snapshots():
+    run = make_run(1e8, n_monomers=3, contacts=2, end=2e8)
+    omega = np.array([0.1, 0.5, 0.8, 1.0, 1.5]) * 1e8
+    place = np.array([-40e-9, 0, 40e-9]) * np.linspace(1, 1.4, 5)[:, None]
+    shape = ("snapshot", "monomer")
+    fragment = np.zeros((5, 3), int)
+    fragment[3:, 2], fragment[4, 0] = 1, -1
+    return run.assign(
+        snapshot_omega=("snapshot", omega), snapshot_x=(shape, place), snapshot_y=(shape, 0 * place),
+        snapshot_z=(shape, 0 * place), snapshot_fragment=(shape, fragment),
+        snapshot_normal_force=(shape, np.full((5, 3), -1e-9)), monomer_radius=("monomer", [20e-9] * 3),
+    )  # fmt: skip
+
+
+def test_figure5_takes_the_nearest_snapshots_and_says_which():
+    run, mark = run_with_snapshots(), xr.Dataset({"omega_disr": 1.02e8})
+    assert nearest_snapshots(run, 1.02e8) == [0, 2, 3]
+    text = words(figure5(run, mark))
+    assert "= 0.78" in text and "= 0.98" in text and "drive: prescribed" in text and "farther" not in text
+
+
+def test_figure5_without_what_it_needs():
+    with pytest.raises(InputError, match="no snapshots"):
+        figure5(make_run(1e8), xr.Dataset({"omega_disr": 1e8}))
+    assert "no peak of the stress" in words(figure5(run_with_snapshots(), xr.Dataset({"omega_disr": np.nan})))
