@@ -68,8 +68,10 @@ def compute(settings, progress=None):
     rows = [reference]
     runs = [(a, f, "explicit") for a in accelerations for f in factors]
     runs += [(a, sorted(factors)[len(factors) // 2], "exact") for a in accelerations[-2:]]
+    # A grain whose last two monomers hold three quarters of its mass never loses one quarter.
+    threshold = reference["omega_mass_75"] if reference["omega_mass_75"] > 0.0 else reference["omega_first_loss"]
     for acceleration, factor, coriolis in runs:
-        limit = LARGEST_OMEGA * reference["omega_mass_75"] / share
+        limit = LARGEST_OMEGA * threshold / share
         dt = reference["timestep"] * factor / reference["timestep_factor"]
         rows.append(
             _row(
