@@ -168,11 +168,7 @@ def tell(table):
     statistics = {mark: summary(rows, mark) for mark in MARKS}
     words.append(_table(statistics, "epsilon"))
     words.append(_recommend(statistics, "epsilon"))
-    per_type = []
-    for kind, part in rows.groupby("type"):
-        for entry in summary(part, "omega_disr"):
-            per_type.append([kind, f"{entry['x']:g}", measured(entry["median"], entry["error"])])
-    words.append("omega_disr by type: " + "; ".join(f"{k} at {x}: {m}" for k, x, m in per_type) + ".")
+    words.append(_cells(rows))
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -189,6 +185,18 @@ def tell(table):
         )
         words.append(_table({mark: summary(rows, mark) for mark in MARKS}, name, scale))
     return "\n\n".join(words)
+
+
+def _cells(rows):
+    """A table: the first loss by type and size, against epsilon."""
+    values = sorted(rows["x"].unique())
+    lines = []
+    for (kind, size), part in rows.groupby(["type", rows["a_eff"].mul(1e9).round()]):
+        entries = {entry["x"]: entry for entry in summary(part, "omega_first_loss")}
+        cells = [measured(entries[x]["median"], entries[x]["error"]) if x in entries else "–" for x in values]
+        lines.append([kind, f"{size:g}", *cells])
+    header = ["type", "size [nm]", *(f"epsilon = {x:g}" for x in values)]
+    return "omega_first_loss by type and size:\n\n" + markdown_table(header, lines)
 
 
 def _laws(table):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
+from ratd.spinup import TIMESTEP_FACTOR
 from ratd.validation.show.text import markdown_table, measured
 from ratd.validation.statistics import median_of
 
@@ -10,7 +11,7 @@ GOAL = 1e-3
 """Greatest error of the energy that is asked for at the production step."""
 SMALL_STEP = 0.1
 """Exponents are fitted up to this f."""
-PRODUCTION, COURSES = 0.05, (0.05, 0.1)
+PRODUCTION, COURSES = TIMESTEP_FACTOR, (0.5 * TIMESTEP_FACTOR, TIMESTEP_FACTOR)
 
 
 def greatest_errors(table):
@@ -29,7 +30,7 @@ def exponents(table):
 
 @styled
 def draw(table):
-    """Greatest error against f, and its course at the production step and at twice that.
+    """Greatest error against f, and its course at half of the production step and at that.
 
     Parameters
     ----------
