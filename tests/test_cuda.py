@@ -28,7 +28,7 @@ TINY = {
     "block_size": 2,
     "spin_up": {"epsilon": None, "angular_acceleration": 4e18, "records": 20, "max_steps": 150},
     "snapshots": {"every": 5, "grains": [{"material": "q-S", "type": "BA", "size_nm": 45, "seed": 1}]},
-    "figures": {"figure4": None, "figure6": None},
+    "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 10)},
 }
 
 

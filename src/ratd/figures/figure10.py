@@ -51,12 +51,13 @@ def figure10(table):
     table = table.assign(error=100 * relative_error(table))
     names = list(dict.fromkeys(table["material"]))
     pairs = plural(table["monomer_radius"].nunique(), "pair")
-    how = ", ".join(
+    how = [
         rf"{start} $\epsilon$ = {part['epsilon'].iloc[0]:g}, f = {part['timestep_factor'].iloc[0]:g}"
         for start, part in table.groupby("start", sort=False)
-    )
+    ]
     wide = len(names) > 1
-    title = f"{pairs} of equal monomers of each material, drive: prescribed{', ' if wide else chr(10)}{how}"
+    of_each = " of each material" if wide else ""
+    title = (", " if wide else "\n").join([f"{pairs} of equal monomers{of_each}, drive: prescribed", *how])
     figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.6 * TWO_COLUMNS, title)
     panels = figure.subplots(2, len(names), sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1])
     for (top, bottom), name in zip(panels.T, names, strict=True):
