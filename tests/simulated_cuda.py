@@ -259,7 +259,7 @@ def fragment_kernel(arena, drop, numbers):
         numbers[1] = drop_departed(body, numbers[0], buffer)
 
 
-# Fails now and then (once in three runs of CI): a race between the threads, of the engine or of the simulation. Until it
+# Fails now and then (once in three runs of CI): a race between threads, of the engine or of the simulation. Until it
 # is known which, nothing may rely on fragments that the device drops.
 @pytest.mark.xfail(strict=False, reason="a race in dropping fragments that is not found yet")
 @pytest.mark.parametrize("seed", range(4))
