@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from benchmarks import cost, kernel, machine, peer, report, scaling
+from benchmarks import cost, kernel, machine, peer, pipeline, report, scaling
 from ratd import config
 from ratd.cuda import device
 from ratd.drives import DRIVES
@@ -12,7 +12,7 @@ from ratd.errors import FileError, InputError
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
-PARTS = ("kernel", "cost", "scaling")
+PARTS = ("kernel", "cost", "scaling", "pipeline")
 ON_REQUEST = ("gpu",)
 """Parts that are done only when they are named."""
 
@@ -43,6 +43,8 @@ def parser():
     result.add_argument("--seeds", type=int, default=10, help="seeds whose bounds are compared per cell (default 10)")
     result.add_argument("--minutes", type=float, default=30.0,
                         help="the cost begins no run after so long; the same command goes on (default 30)")  # fmt: skip
+    result.add_argument("--small", type=float, default=150.0,
+                        help="the pipeline is measured over sizes up to this one, in nm (default 150)")  # fmt: skip
     result.add_argument("--quick", action="store_true", help="tiny runs that show that it works")
     result.add_argument("--out", type=Path, help="folder of the results (default benchmarks/results; not with --quick)")
     return result
@@ -137,6 +139,14 @@ def _measure(arguments):
             about=about,
             say=say,
         )
+    if "pipeline" in parts:
+        plan = _plan([ROOT / "config" / "config.yaml", *arguments.config], quick)
+        small = [size for size in plan.sizes[::-1] if float(size) <= arguments.small]
+        if not small:
+            raise InputError(
+                f"--small is {arguments.small:g}; it must be at least the smallest size, {plan.sizes[-1]}."
+            )
+        pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
     if "gpu" in parts:
         # Imported here, because it compiles for a device.
         from benchmarks import gpu

@@ -109,7 +109,8 @@ def _settings(plan, drive, cell, coarse):
     }
 
 
-def _grow(plan, cell, seed):
+def grain_of(plan, cell, seed):
+    """A grain of the config."""
     material, kind, size = cell
     settings = plan.grow(*cell)
     return grow(
@@ -118,7 +119,8 @@ def _grow(plan, cell, seed):
     )  # fmt: skip
 
 
-def _arguments(plan, drive, coarse):
+def arguments_of(plan, drive, coarse):
+    """Arguments of `ratd.spin_up` for a run `coarse` times as fast as the config says."""
     spin = plan.spin_up_of(drive)
     arguments = {
         "drive": drive,
@@ -134,15 +136,15 @@ def _compile(plan, drives):
     """Run something small, so that no row holds the time that compiling takes."""
     grain = grow("BAM2", 60 * NM, "q-S", 0)
     for drive in drives:
-        spin_up(grain, max_steps=1000, **_arguments(plan, drive, 1000))
+        spin_up(grain, max_steps=1000, **arguments_of(plan, drive, 1000))
 
 
 def _run(plan, drive, cell, coarse, say):
     """The first grain of a cell that comes to rest, spun up `coarse` times as fast; processor times [s]."""
-    arguments = _arguments(plan, drive, coarse)
+    arguments = arguments_of(plan, drive, coarse)
     for seed in plan.seeds:
         start = time.process_time()
-        grain = _grow(plan, cell, seed)
+        grain = grain_of(plan, cell, seed)
         grown = time.process_time()
         try:
             relax(grain, timestep_factor=arguments["timestep_factor"])
@@ -223,7 +225,7 @@ def _bounds(out, plan, seeds, about, say):
         cell = (material, kind, size)
         if cell in result:
             continue
-        grains = [_grow(plan, cell, seed) for seed in plan.seeds[:seeds]]
+        grains = [grain_of(plan, cell, seed) for seed in plan.seeds[:seeds]]
         work = np.array([_work(grain) for grain in grains])
         error = work.std(ddof=1) / np.sqrt(len(work)) if len(work) > 1 else np.nan
         row = {"material": material, "type": kind, "size_nm": size, **key}

@@ -5,6 +5,7 @@ import platform
 import resource
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 from ratd.provenance import source_hash, versions
@@ -67,6 +68,7 @@ def peak_memory():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale
 
 
+@cache
 def source():
     """Hash of all source of ratd that decides what a spin-up computes, and so what it costs."""
     return source_hash(modules=["ratd.spinup", "ratd.growth"])[:12]

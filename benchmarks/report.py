@@ -21,7 +21,7 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_kernel, _cost, _scaling, _gpu)]
+    parts += [section(out) for section in (_kernel, _cost, _scaling, _pipeline, _gpu)]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -104,6 +104,31 @@ def _kernel(out):
             "## Kernel beside LAMMPS: ns per contact and step\n", _where(data), about + "\n", table(head, rows),
             f"### {small['monomers'].iloc[0]} monomers: microseconds per step, all included\n",
             table(["type", "motion", "contacts", "runs", "us per step"], tiny), "![kernel](kernel.png)\n",
+        ]
+    )  # fmt: skip
+
+
+def _pipeline(out):
+    data = _read(out, "pipeline")
+    if data is None:
+        return ""
+    first = data.iloc[0]
+    work, wall = data["seconds_of_work"], data["seconds_of_pipeline"]
+    rows = [
+        [f"{size:g}", grains, f"{a:.1f}", f"{b:.1f}", f"{1 - a / b:.0%}"]
+        for size, grains, a, b in zip(data["size_nm"], data["grains"], work, wall, strict=True)
+    ]
+    share = 1 - work.sum() / wall.sum()
+    rows.append(["all", data["grains"].sum(), f"{work.sum():.1f}", f"{wall.sum():.1f}", f"{share:.0%}"])
+    about = (
+        f"The grains of {first['material']} of all types, drive `{first['drive']}`, {first['block_size']} grains a "
+        "job: growing and spinning them up in one process, and Snakemake from nothing to their marks of disruption on "
+        "the same core, one call a size. The code is compiled before either. Wall time.\n"
+    )
+    return "\n".join(
+        [
+            "## What the pipeline adds over small sizes\n", _where(data), about,
+            table(["size [nm]", "grains", "work [s]", "pipeline [s]", "not work"], rows),
         ]
     )  # fmt: skip
 

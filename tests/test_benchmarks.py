@@ -118,6 +118,13 @@ def test_scaling_has_every_number_and_memory_beyond_the_state(results):
     assert all(int(row["peak_bytes"]) > int(row["idle_bytes"]) > int(row["state_bytes"]) > 0 for row in table)
 
 
+def test_pipeline_makes_the_grains_that_are_made_without_it(results):
+    (row,) = rows(results / "pipeline.csv")
+    assert (row["size_nm"], row["grains"]) == ("50", "6")
+    assert float(row["seconds_of_work"]) > 0.0 and float(row["seconds_of_pipeline"]) > 0.0
+    assert "| 50 | 6 |" in (results / "README.md").read_text()
+
+
 def test_report_names_the_machine_and_has_all_figures(results, benchmarks):
     from benchmarks import machine
 
