@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from benchmarks import cost, kernel, machine, peer, pipeline, report, scaling
+from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
 from ratd import config
 from ratd.cuda import device
 from ratd.drives import DRIVES
@@ -13,8 +13,11 @@ from ratd.errors import FileError, InputError
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("gpu",)
+ON_REQUEST = ("profile", "gpu")
 """Parts that are done only when they are named."""
+
+PROFILED = ("150", "300")
+"""Sizes [nm] of the profile."""
 
 
 def parser():
@@ -147,6 +150,10 @@ def _measure(arguments):
                 f"--small is {arguments.small:g}; it must be at least the smallest size, {plan.sizes[-1]}."
             )
         pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
+    if "profile" in parts:
+        plan = _plan([ROOT / "config" / "config.yaml", *arguments.config], quick)
+        sizes = PROFILED if not quick else plan.sizes
+        profile.measure(out, plan, sizes=sizes, about=about, say=say)
     if "gpu" in parts:
         # Imported here, because it compiles for a device.
         from benchmarks import gpu

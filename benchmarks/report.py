@@ -21,7 +21,7 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_kernel, _cost, _scaling, _pipeline, _gpu)]
+    parts += [section(out) for section in (_goals, _kernel, _cost, _profile, _scaling, _pipeline, _gpu)]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -59,6 +59,59 @@ def pair_ratios(case):
     """LAMMPS over ratd for each pair of a case, (pairs,); empty without LAMMPS."""
     both = case.pivot_table(index="pair", columns="code", values="ns_per_contact_step")
     return (both["LAMMPS"] / both["ratd"]).to_numpy() if "LAMMPS" in both else np.empty(0)
+
+
+def goals(out):
+    """What was aimed at and what was measured.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+        Folder of the results.
+
+    Returns
+    -------
+    list of tuple
+        What, its unit, measured value, limit, whether the limit is the greatest value (else the least). What was not
+        measured is left out.
+    """
+    data, small, runs = _read(out, "kernel"), _read(out, "small"), _read(out, "cost_runs")
+    paper, growth, overhead = _read(out, "cost_paper"), _read(out, "scaling"), _read(out, "pipeline")
+    found = []
+    for (name, motion), case in [] if data is None else data.groupby(["aggregate", "motion"], sort=False):
+        own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
+        found.append((f"kernel, {name} {motion}", "ns per contact and step", own, 17.0, True))
+        ratio = pair_ratios(case)
+        if len(ratio):
+            found.append((f"LAMMPS over ratd, {name} {motion}", "times", float(np.median(ratio)), 10.0, False))
+    if small is not None:
+        slowest = small.groupby(["aggregate", "motion"])["us_per_step"].median().max()
+        found.append((f"a step of {small['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True))
+    if runs is not None:
+        largest = runs[runs["size_nm"] == runs["size_nm"].max()]
+        name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
+        found.append((name, "s", largest["growth_seconds"].max(), 0.5, True))
+    for row in [] if paper is None else paper.itertuples():
+        found.append((f"{row.grains} grains, drive {row.drive}", "core-hours", row.core_hours, 48.0, True))
+    if overhead is not None:
+        share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
+        largest = overhead["size_nm"].max()
+        found.append((f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True))
+    if growth is not None:
+        paper_sized = growth[growth["monomers"] <= 3000]
+        found.append(("memory of a job, up to 3000 monomers", "MB", paper_sized["peak_bytes"].max() / 1e6, 400.0, True))
+    return found
+
+
+def _goals(out):
+    rows = []
+    for what, unit, value, limit, greatest in goals(out):
+        off = value / limit if greatest else limit / value
+        verdict = "met" if off <= 1.0 else f"missed by a factor of {off:.2f}"
+        rows.append([what, f"{'at most' if greatest else 'at least'} {limit:g} {unit}", f"{value:.3g}", verdict])
+    if not rows:
+        return ""
+    return "\n".join(["## Goals\n", table(["what", "goal", "measured", ""], rows)])
 
 
 def _kernel(out):
@@ -106,6 +159,26 @@ def _kernel(out):
             table(["type", "motion", "contacts", "runs", "us per step"], tiny), "![kernel](kernel.png)\n",
         ]
     )  # fmt: skip
+
+
+def _profile(out):
+    data = _read(out, "profile")
+    if data is None:
+        return ""
+    rows = []
+    for (kind, size), case in data.groupby(["type", "size_nm"], sort=False):
+        parts = zip(case["steps"], case["contact_updates"], strict=True)
+        rows.append([kind, f"{size:g}", *[f"{steps:.0%} / {updates:.0%}" for steps, updates in parts]])
+    first = data[(data["type"] == data["type"].iloc[0]) & (data["size_nm"] == data["size_nm"].iloc[0])]
+    bands = [
+        f"omega below {high:g}" if low == 0 else f"{low:g} to {high:g}" if np.isfinite(high) else f"above {low:g}"
+        for low, high in zip(first["from_bound"], first["to_bound"], strict=True)
+    ]
+    about = (
+        "Where the steps of a run go, and the updates of contacts: shares of both, by omega in units of the cut bound, "
+        f"for one grain of {data['material'].iloc[0]} each, drive `{data['drive'].iloc[0]}`. Counted, not timed.\n"
+    )
+    return "\n".join(["### Where the steps go\n", about, table(["type", "size [nm]", *bands], rows)])
 
 
 def _pipeline(out):

@@ -118,6 +118,28 @@ def test_scaling_has_every_number_and_memory_beyond_the_state(results):
     assert all(int(row["peak_bytes"]) > int(row["idle_bytes"]) > int(row["state_bytes"]) > 0 for row in table)
 
 
+def test_profile_divides_all_steps_among_its_bands(tmp_path):
+    done = command("profile", "--quick", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    table = rows(tmp_path / "profile.csv")
+    for kind in ("BA", "BAM1", "BAM2"):
+        own = [row for row in table if row["type"] == kind]
+        assert [row["from_bound"] for row in own] == ["0", "0.7", "1", "2"]
+        for column in ("steps", "contact_updates"):
+            assert sum(float(row[column]) for row in own) == pytest.approx(1.0, abs=1e-5)
+    assert "### Where the steps go" in (tmp_path / "README.md").read_text()
+
+
+def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
+    from benchmarks import report
+
+    assert report.goals(tmp_path) == []
+    (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
+    ((what, unit, value, limit, greatest),) = report.goals(tmp_path)
+    assert "up to 100 nm" in what and (unit, limit, greatest) == ("%", 10.0, True)
+    assert value == pytest.approx(10.0)
+
+
 def test_pipeline_makes_the_grains_that_are_made_without_it(results):
     (row,) = rows(results / "pipeline.csv")
     assert (row["size_nm"], row["grains"]) == ("50", "6")
