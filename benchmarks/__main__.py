@@ -169,6 +169,8 @@ def _measure(arguments):
             say=say,
         )
     report.write(out)
+    if arguments.out is None:
+        report.quote(out, ROOT / "README.md")
     say(f"written: {out / 'README.md'}")
     return 0 if complete else 3
 

@@ -5,6 +5,7 @@ import pandas as pd
 
 from benchmarks.cost import FASTER
 from benchmarks.scaling import LINEAR_FROM, exponent
+from ratd.errors import FileError
 from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
 from ratd.io import atomic
 
@@ -21,7 +22,7 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_goals, _kernel, _cost, _profile, _scaling, _pipeline, _gpu)]
+    parts += [section(out) for section in (_goals_section, _kernel, _cost, _profile, _scaling, _pipeline, _gpu)]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -59,6 +60,33 @@ def pair_ratios(case):
     """LAMMPS over ratd for each pair of a case, (pairs,); empty without LAMMPS."""
     both = case.pivot_table(index="pair", columns="code", values="ns_per_contact_step")
     return (both["LAMMPS"] / both["ratd"]).to_numpy() if "LAMMPS" in both else np.empty(0)
+
+
+MARKS = ("<!-- speed: written by python -m benchmarks -->\n", "<!-- end of speed -->\n")
+"""Between these lines the README of the repository quotes the goals."""
+
+
+def quote(out, readme):
+    """Put the goals, and the machine, into a README between `MARKS`; the rest of it stays.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+        Folder of the results.
+    readme : pathlib.Path
+
+    Raises
+    ------
+    FileError
+        If the README lacks the marks.
+    """
+    text = readme.read_text(encoding="utf-8")
+    if not all(mark in text for mark in MARKS):
+        raise FileError(f"{readme}: has no lines {MARKS[0].strip()!r} and {MARKS[1].strip()!r} to write between")
+    before, rest = text.split(MARKS[0])
+    after = rest.split(MARKS[1])[1]
+    with atomic(readme) as part:
+        part.write_text(f"{before}{MARKS[0]}\n{_goals(out)}\n{MARKS[1]}{after}", encoding="utf-8")
 
 
 def goals(out):
@@ -111,7 +139,20 @@ def _goals(out):
         rows.append([what, f"{'at most' if greatest else 'at least'} {limit:g} {unit}", f"{value:.3g}", verdict])
     if not rows:
         return ""
-    return "\n".join(["## Goals\n", table(["what", "goal", "measured", ""], rows)])
+    return table(["what", "goal", "measured", ""], rows) + "\n" + "\n".join(_machines(out))
+
+
+def _machines(out):
+    """The machines that the goals were measured on, list of str."""
+    names = ("kernel", "cost_paper", "scaling", "pipeline")
+    tables_ = [data for data in (_read(out, name) for name in names) if data is not None and "machine" in data]
+    machines = dict.fromkeys(machine for data in tables_ for machine in data["machine"])
+    return [f"Measured on one core of: {machine}." for machine in machines]
+
+
+def _goals_section(out):
+    text = _goals(out)
+    return f"## Goals\n\n{text}\n" if text else ""
 
 
 def _kernel(out):

@@ -138,6 +138,16 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     ((what, unit, value, limit, greatest),) = report.goals(tmp_path)
     assert "up to 100 nm" in what and (unit, limit, greatest) == ("%", 10.0, True)
     assert value == pytest.approx(10.0)
+    readme = tmp_path / "own.md"
+    readme.write_text(f"before\n{report.MARKS[0]}old\n{report.MARKS[1]}after\n")
+    for _ in range(2):
+        report.quote(tmp_path, readme)
+        text = readme.read_text()
+        assert text.startswith("before\n<!--") and text.endswith("-->\nafter\n") and "old" not in text
+        assert text.count("| at most 10 % | 10 | met |") == 1
+    readme.write_text("nothing\n")
+    with pytest.raises(FileError, match="to write between"):
+        report.quote(tmp_path, readme)
 
 
 def test_pipeline_makes_the_grains_that_are_made_without_it(results):
