@@ -4,14 +4,11 @@ import numpy as np
 
 from ratd.growth import grow
 from ratd.spinup import spin_up
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MODES = ("sliding", "rolling", "twisting", "damping", "contact")
 COLUMNS = {
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
+    **GRAIN_COLUMNS,
     "epsilon": ("1", "(d omega/dt)/omega^2"),
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "omega": ("rad s-1", "angular velocity"),
@@ -48,10 +45,7 @@ def compute(settings, progress=None):
     for k in range(1, whole):
         rows.append(
             dict(
-                material=grain.material.name,
-                type=grain.type,
-                a_eff=grain.effective_radius,
-                seed=grain.seed,
+                **grain_values(grain),
                 epsilon=settings["epsilon"],
                 timestep_factor=settings["timestep_factor"],
                 omega=run["omega"].values[k],

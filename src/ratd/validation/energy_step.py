@@ -6,21 +6,15 @@ Damping and the limits of sliding and rolling are switched off; twisting stays b
 
 import numpy as np
 
-from ratd.drives import AT_REST
-from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.layout import CONTACTS, STEPS
 from ratd.engine.measure import dissipated
 from ratd.engine.state import monomer_rows
 from ratd.growth import grow
-from ratd.validation.free_grain import energy_after_step, kinetic_energy, make_elastic, shaken, turn
-from ratd.validation.tables import table_kind
+from ratd.validation.free_grain import energy_after_step, go_on, kinetic_energy, make_elastic, shaken, turn
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 COLUMNS = {
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
-    "n_monomers": ("1", "monomers"),
+    **GRAIN_COLUMNS,
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "step": ("1", "steps made before the energies of the sample"),
     "error": ("1", "energy less that of the first step, over the kinetic energy at the start, mean of the sample"),
@@ -74,9 +68,7 @@ def course(grain, speed, timestep_factor, steps, samples):
     start, contacts = kinetic_energy(monomer_rows(state)), state.counter[CONTACTS]
 
     def go(state, number=1):
-        goal = state.counter[STEPS] + number
-        if advance(state, AT_REST, np.inf, goal, -1, timestep_factor, True) != STEPS_DONE:
-            raise RuntimeError(f"the free grain {grain.type} {grain.seed} did not go on at f = {timestep_factor:g}")
+        go_on(state, grain, state.counter[STEPS] + number, timestep_factor)
 
     first, rows = None, []
     between = steps // samples - SAMPLE
@@ -87,11 +79,7 @@ def course(grain, speed, timestep_factor, steps, samples):
         error = (energies - first) / start
         rows.append(
             dict(
-                material=grain.material.name,
-                type=grain.type,
-                a_eff=grain.effective_radius,
-                seed=grain.seed,
-                n_monomers=grain.n_monomers,
+                **grain_values(grain),
                 timestep_factor=timestep_factor,
                 step=number,
                 error=error.mean(),

@@ -28,7 +28,7 @@ from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
 from ratd.growth import grow
 from ratd.laws.tangential import TWISTING_LIMIT
 from ratd.materials import equilibrium_compression, get_material, reduced_radius
-from ratd.validation.free_grain import SPIN, VELOCITY, momenta, shaken, with_field
+from ratd.validation.free_grain import SPIN, VELOCITY, go_on, momenta, shaken, with_field
 from ratd.validation.tables import table_kind
 
 MODES = {"normal": PULL_OFF, "sliding": K_SLIDE, "rolling": K_ROLL, "twisting": K_TWIST}
@@ -237,9 +237,7 @@ def momenta_of(grain, speed, timestep_factor, steps, samples):
     linear_start, size, angular_start, _ = momenta(state)
     rows = []
     for sample in range(1, samples + 1):
-        goal = round(steps * sample / samples)
-        if advance(state, AT_REST, np.inf, goal, -1, timestep_factor, True) != STEPS_DONE:
-            raise RuntimeError(f"the free grain {grain.type} {grain.seed} did not go on")
+        go_on(state, grain, round(steps * sample / samples), timestep_factor)
         if state.counter[LARGEST_MONOMERS] != grain.n_monomers:
             raise RuntimeError(f"the free grain {grain.type} {grain.seed} lost a part; shake it less")
         linear, _, angular, _ = momenta(state)

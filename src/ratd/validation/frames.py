@@ -11,22 +11,17 @@ import numpy as np
 
 from ratd.bound import cut_bound
 from ratd.drives import AT_REST, OMEGA_RAT, angular_velocity, make_drive
-from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.contacts import update_contact_rates
-from ratd.engine.layout import DT, STEPS, TIME
+from ratd.engine.layout import DT, TIME
 from ratd.engine.measure import dissipated
 from ratd.engine.state import monomer_rows
 from ratd.growth import grow
 from ratd.spinup import relax
-from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, turn
-from ratd.validation.tables import table_kind
+from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, go_on, turn
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 COLUMNS = {
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
-    "n_monomers": ("1", "monomers"),
+    **GRAIN_COLUMNS,
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "time": ("s", "time since the start"),
     "turned": ("rad", "angle by which the frame has turned"),
@@ -135,9 +130,7 @@ def distances(grain, speed, omega, timestep_factor, samples):
     for sample in range(1, samples + 1):
         goal = round(steps * sample / samples)
         for state, frame in ((fixed, AT_REST), (turning, drive)):
-            code = advance(state, frame, np.inf, goal, -1, timestep_factor, True)
-            if code != STEPS_DONE or state.counter[STEPS] != goal:
-                raise RuntimeError(f"the free grain {grain.type} {grain.seed} did not go on at f = {timestep_factor:g}")
+            go_on(state, grain, goal, timestep_factor, frame)
         angle = turned_angle(drive, time, turning.scalar[TIME])
         place = monomer_rows(fixed)[:, POSITION]
         other = about_z(monomer_rows(turning)[:, POSITION], angle)
@@ -145,11 +138,7 @@ def distances(grain, speed, omega, timestep_factor, samples):
             raise RuntimeError(f"the free grain {grain.type} {grain.seed} lost a part; let it turn more slowly")
         rows.append(
             dict(
-                material=grain.material.name,
-                type=grain.type,
-                a_eff=grain.effective_radius,
-                seed=grain.seed,
-                n_monomers=grain.n_monomers,
+                **grain_values(grain),
                 timestep_factor=timestep_factor,
                 time=fixed.scalar[TIME],
                 turned=angle,

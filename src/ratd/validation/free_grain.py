@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from ratd.drives import AT_REST
+from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.fragments import find_fragments
-from ratd.engine.layout import DAMPING, INERTIA, INV_XI2, INV_ZETA2, LANES, MASS, VX, WX, X
+from ratd.engine.layout import DAMPING, INERTIA, INV_XI2, INV_ZETA2, LANES, MASS, STEPS, VX, WX, X
 from ratd.engine.measure import stored_energy
 from ratd.engine.state import contact_blocks, monomer_rows, new_state
 
@@ -65,6 +67,31 @@ def turn(rows, omega):
     """Add a rigid rotation with omega (3,) [rad/s] about the origin to rows of monomers."""
     rows[:, VELOCITY] += np.cross(omega, rows[:, POSITION])
     rows[:, SPIN] += omega
+
+
+def go_on(state, grain, goal, timestep_factor, drive=AT_REST):
+    """Integrate until so many steps have been made in all.
+
+    Parameters
+    ----------
+    state : State
+    grain : ratd.Grain
+        Of the state, for the message.
+    goal : int
+        Total number of steps.
+    timestep_factor : float
+        f of Eq. 31; damping, if any, is implicit.
+    drive : ratd.drives.Drive
+        Of the frame; by default one that does not turn.
+
+    Raises
+    ------
+    RuntimeError
+        If the integration ends before.
+    """
+    code = advance(state, drive, np.inf, goal, -1, timestep_factor, True)
+    if code != STEPS_DONE or state.counter[STEPS] != goal:
+        raise RuntimeError(f"the free grain {grain.type} {grain.seed} did not go on at f = {timestep_factor:g}")
 
 
 def copied(state):

@@ -23,7 +23,7 @@ from ratd.neighbours import connected_components
 from ratd.spinup import relax
 from ratd.validation import peer_lammps
 from ratd.validation.peer_lammps import Spheres, stable_step
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 CODES = ("ratd", "LAMMPS")
 TURNING = "LAMMPS, turning frame"
@@ -31,7 +31,6 @@ COMPARISONS = (("sudden", "LAMMPS"), ("sudden", TURNING), ("driven", TURNING))
 """Start, and what stands beside ratd."""
 COLUMNS = {
     "study": ("", "force (of two spheres) or rotation (of a grain)"),
-    "material": ("", "material"),
     "code": ("", f"ratd, LAMMPS or {TURNING}"),
     "version": ("", "version of LAMMPS"),
     "path": ("", "force: approach or withdrawal; rotation: sudden or driven"),
@@ -41,10 +40,7 @@ COLUMNS = {
     "normal_force": ("N", "normal force, positive when it pushes the spheres apart; none without contact"),
     "equilibrium_overlap": ("m", "delta_0"),
     "pull_off_force": ("N", "F_C = 3 pi gamma R"),
-    "type": ("", "growth: BA or BAM2"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
-    "n_monomers": ("1", "monomers"),
+    **GRAIN_COLUMNS,
     "n_contacts": ("1", "contacts at the start"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "timestep": ("s", "time step at the start"),
@@ -314,13 +310,9 @@ def rotate(settings, progress):
         rows += [
             _row(
                 study="rotation",
-                material=material.name,
+                **grain_values(grain),
                 code=code,
                 path=path,
-                type=grain.type,
-                a_eff=grain.effective_radius,
-                seed=settings["seed"],
-                n_monomers=grain.n_monomers,
                 n_contacts=grain.n_contacts,
                 cut_bound=unit,
                 timestep=timestep,

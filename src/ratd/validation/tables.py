@@ -8,6 +8,34 @@ from ratd.errors import InputError
 
 CASE = "case"
 """Dimension along which the cases of a file stand."""
+GRAIN_COLUMNS = {
+    "material": ("", "material"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "n_monomers": ("1", "monomers"),
+}
+"""Columns that say which grain a case is of, for `table_kind`; `grain_values` gives their values."""
+
+
+def grain_values(grain):
+    """Values of `GRAIN_COLUMNS`.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+
+    Returns
+    -------
+    dict
+    """
+    return dict(
+        material=grain.material.name,
+        type=grain.type,
+        a_eff=grain.effective_radius,
+        seed=grain.seed,
+        n_monomers=grain.n_monomers,
+    )
 
 
 def table_kind(name, title, columns):

@@ -6,16 +6,12 @@ from ratd.bound import cut_bound, midplane_bound
 from ratd.growth import grow
 from ratd.marks import disruption
 from ratd.spinup import spin_up
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
 COLUMNS = {
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
+    **GRAIN_COLUMNS,
     "epsilon": ("1", "(d omega/dt)/omega^2"),
-    "n_monomers": ("1", "monomers"),
     "n_contacts": ("1", "contacts"),
     "porosity": ("1", "porosity"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
@@ -48,12 +44,8 @@ def compute(settings, progress=None):
         solid = not math.isfinite(grain.shape.porosity) or grain.shape.porosity <= 0.0
         rows.append(
             dict(
-                material=grain.material.name,
-                type=grain.type,
-                a_eff=grain.effective_radius,
-                seed=seed,
+                **grain_values(grain),
                 epsilon=settings["epsilon"],
-                n_monomers=grain.n_monomers,
                 n_contacts=grain.n_contacts,
                 porosity=grain.shape.porosity,
                 cut_bound=cut_bound(grain),

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd.figures.style import TWO_COLUMNS, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table
 from ratd.validation.energy import MODES
-from ratd.validation.show.text import markdown_table
 
 COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#0072B2", "#E69F00")
 

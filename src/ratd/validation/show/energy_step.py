@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
+from ratd.markdown import markdown_table, measured
 from ratd.spinup import TIMESTEP_FACTOR
-from ratd.validation.show.text import markdown_table, measured
 from ratd.validation.statistics import median_of
 
 GOAL = 1e-3
@@ -114,9 +114,11 @@ def tell(table):
             markdown_table(["type", "grains", *(f"f = {f:g}" for f in factors), "exponent of f"], rows),
             f"The error stays below {GOAL:g} "
             + (f"up to f = {max(good):g}." if good else "at no f.")
-            + f" At the production step f = {PRODUCTION:g} it is at most "
-            f"{errors.xs(PRODUCTION, level='timestep_factor').max():.1e}."
-            if PRODUCTION in factors
-            else "",
+            + (
+                f" At the production step f = {PRODUCTION:g} it is at most "
+                f"{errors.xs(PRODUCTION, level='timestep_factor').max():.1e}."
+                if PRODUCTION in factors
+                else ""
+            ),
         ]
     )

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table
 from ratd.validation.forces import DISSIPATION, MODES
-from ratd.validation.show.text import markdown_table
 
 COLOURS = {"normal": "#000000", "sliding": "#D55E00", "rolling": "#009E73", "twisting": "#CC79A7"}
 FORCE_GOAL, MOMENTUM_GOAL = 1e-6, 1e-10

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.validation.show.text import markdown_table, measured
+from ratd.markdown import markdown_table, measured
 from ratd.validation.statistics import median_of
 
 FIRST_ORDER = (

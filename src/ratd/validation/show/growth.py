@@ -4,8 +4,8 @@ import numpy as np
 from scipy.stats import kstest
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, empty, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured
 from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY
-from ratd.validation.show.text import markdown_table, measured
 
 LIMIT = 1.36
 """Greatest deviation of a cumulative distribution times sqrt(n) that 95 % of all samples of size n stay below."""

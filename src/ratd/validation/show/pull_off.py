@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, nanometres, new_figure, plural, styled
-from ratd.validation.show.text import markdown_table
+from ratd.markdown import markdown_table
 
 LOOK = {"damped": ("#0072B2", "damped, from equilibrium"), "undamped": ("#D55E00", r"undamped, from $\delta = 0$")}
 EQ35 = np.sqrt(5.0 / 9.0)
