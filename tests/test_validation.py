@@ -1,5 +1,6 @@
 """The fast part of the checks of `snakemake validation`, and that what they say follows from their tables."""
 
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.stats import kstest
 
 import ratd
 from ratd import schema
+from ratd.markdown import markdown_table, measured
 from ratd.materials import MATERIALS
 from ratd.validation import (
     convergence,
@@ -16,6 +18,7 @@ from ratd.validation import (
     energy_step,
     forces,
     frames,
+    free_grain,
     growth,
     literal,
     pull_off,
@@ -33,9 +36,8 @@ from ratd.validation.show import literal as show_literal
 from ratd.validation.show import pull_off as show_pull_off
 from ratd.validation.show import theory as show_theory
 from ratd.validation.show.report import report
-from ratd.validation.show.text import markdown_table, measured
 from ratd.validation.statistics import median_of
-from ratd.validation.tables import read_tables, write_table
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
 
 CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
 SMALL = {"material": "q-S", "type": "BAM2", "a_eff": 60e-9, "seed": 0}
@@ -106,6 +108,22 @@ def test_a_table_with_other_columns_is_refused(tmp_path):
         write_table(tmp_path / "a.nc", [], pull_off.KIND, {})
 
 
+def test_columns_and_values_of_a_grain_agree():
+    grain = ratd.grow("BA", 60e-9, "q-S", 3)
+    values = grain_values(grain)
+    assert values.keys() == GRAIN_COLUMNS.keys()
+    assert values["seed"] == 3 and values["type"] == "BA" and values["material"] == "q-S"
+    assert values["n_monomers"] == len(grain.radius) and values["a_eff"] == pytest.approx(60e-9, rel=1e-9)
+
+
+def test_a_free_grain_that_does_not_go_on_is_named():
+    grain = ratd.grow("BA", 60e-9, "q-S", 3)
+    state = free_grain.state_of(grain)
+    free_grain.go_on(state, grain, 5, 0.02)
+    with pytest.raises(RuntimeError, match="BA 3 did not go on at f = 0.02"):
+        free_grain.go_on(state, grain, 4, 0.02)
+
+
 @pytest.fixture(scope="module")
 def convergence_rows():
     return convergence.compute(
@@ -138,20 +156,49 @@ def test_convergence_of_one_grain(convergence_rows):
     assert times.loc[1e-12] < 1.0 < times.loc[9e-12]
 
 
+def epsilon_row(study, seed, epsilon, omega, a_eff=1e-7):
+    """A run of the convergence check with all marks at omega."""
+    row = {name: "" if not units else np.nan for name, (units, _) in convergence.COLUMNS.items()}
+    row |= dict(study=study, material="q-S", type="BA", damping="implicit", outcome="one contact left")
+    row |= dict(a_eff=a_eff, seed=seed, epsilon=epsilon, timestep_factor=0.05)
+    return row | {name: omega for name in convergence.MARKS}
+
+
 def test_ratios_are_to_the_finest_run_of_the_same_grain():
     rows = []
     for seed, scale in ((0, 1e7), (1, 3e7)):
         for epsilon, shift in ((0.01, 1.0), (0.1, 1.02), (1.0, 1.5)):
-            row = {name: "" if not units else np.nan for name, (units, _) in convergence.COLUMNS.items()}
-            row |= dict(study="epsilon", material="q-S", type="BA", damping="implicit", outcome="one contact left")
-            row |= dict(a_eff=1e-7, seed=seed, epsilon=epsilon, timestep_factor=0.05)
-            rows.append(row | {name: scale * shift for name in convergence.MARKS})
+            rows.append(epsilon_row("epsilon", seed, epsilon, scale * shift))
     table = show_convergence.ratios(pd.DataFrame(rows), "epsilon")
     statistics = show_convergence.summary(table, "omega_disr")
     np.testing.assert_allclose([entry["median"] for entry in statistics], [1.0, 1.02, 1.5])
     assert show_convergence.coarsest(statistics) == 0.1
     assert show_convergence.coarsest(statistics, goal=0.6) == 1.0
     assert np.isnan(show_convergence.coarsest(statistics[2:]))
+
+
+def test_a_large_grain_is_spun_up_with_its_own_epsilon_alone():
+    settings = SMALL | {"production": {"epsilon": 0.1, "timestep_factor": 0.1}, "epsilon_large": [0.2, 0.1]}
+    rows = convergence.compute(settings)
+    assert [(row["study"], row["epsilon"]) for row in rows] == [("epsilon_large", 0.2), ("epsilon_large", 0.1)]
+    assert all(row["omega_first_loss"] > 0.0 for row in rows)
+
+
+def test_larger_grains_have_tables_of_their_own(convergence_rows):
+    large = [
+        epsilon_row("epsilon_large", seed, epsilon, omega, 3e-7)
+        for seed in range(3)
+        for epsilon, omega in ((0.005, 1.0), (0.01, 1.0625), (0.02, 1.125))  # exact in binary
+    ]
+    without = show_convergence.tell(pd.DataFrame(convergence_rows))
+    text = works(show_convergence, convergence_rows + large)
+    assert "larger grain" not in without and "3 larger grains" in text
+    words = text.split("\n\n")
+    assert set(without.split("\n\n")) <= set(words)  # nothing else has changed
+    for mark in show_convergence.IN_CELLS:
+        head = words.index(f"{mark} by type and size:", words.index(next(w for w in words if "larger grains" in w)))
+        assert "| BA | 300 | 3 | 1 | 1.06 | 1.12 |" in words[head + 1]
+    assert "omega_mass_75 in 1 of 1 cells (BA 300 nm 1.06)" in text
 
 
 def test_theory(tmp_path):
@@ -204,7 +251,10 @@ def test_an_elastic_grain_keeps_its_energy_to_second_order_of_the_step():
     assert (table["dissipated"] == 0.0).all() and (table["contacts_made"] == 0).all()
     assert show_energy_step.exponents(table).iloc[0] == pytest.approx(2.0, abs=0.2)
     assert show_energy_step.greatest_errors(table).xs(0.05, level="timestep_factor").max() < 1e-3
-    assert "No run dissipated" in works(show_energy_step, rows)
+    text = works(show_energy_step, rows)
+    assert "No run dissipated" in text and "The error stays below" in text and "At the production step" in text
+    text = show_energy_step.tell(table[table["timestep_factor"] < show_energy_step.PRODUCTION])
+    assert "The error stays below" in text and "At the production step" not in text
 
 
 def test_frames_agree():
@@ -261,14 +311,30 @@ def test_the_spins_share_of_a_pair():
     assert literal.spin_share(pair) == pytest.approx(0.8 / 2.8, rel=1e-9)
 
 
+def test_a_solid_grain_under_the_printed_equations():
+    """Fourth root, third root, and the spins alone, in units in which d omega/dt = dt = 1."""
+    third = [literal.solid_omega(threshold, 1e-9, 1.0, 1.0)[0] for threshold in (1e4, 1e5)]
+    assert third[1] == pytest.approx(third[0], rel=1e-3)
+    assert literal.solid_omega(1e-5, 1e-9, 1.0, 1.0)[0] == pytest.approx(4e-5**0.25, rel=1e-2)
+    omega, backwards = literal.solid_omega(1e-3, 0.2, 1.0, 1.0)
+    assert omega == pytest.approx(1e-3 / 0.2, rel=1e-3) and not backwards
+    once, backwards = literal.solid_omega(1e8, 0.1, 1e14, 1e-12)
+    assert backwards and literal.solid_omega(1e8, 0.1, 3e14, 3e-12)[0] == pytest.approx(once, rel=1e-6)
+    assert np.isnan(literal.solid_omega(np.nan, 0.1, 1.0, 1.0)[0])
+
+
 def test_literal_drive():
     rows = literal.compute(
         {"material": "q-S", "type": "BA", "a_eff": 50e-9, "seed": 0}
-        | {"angular_acceleration": [1e16, 1e17], "timestep_factor": [0.05, 0.1]}
+        | {"part_of_limit": [0.5, 0.8], "timestep_factor": [0.1, 0.2]}
     )
     assert [row["drive"] for row in rows] == ["prescribed"] + ["literal"] * 6
-    explicit = [row for row in rows if row["coriolis"] == "explicit" and row["drive"] == "literal"]
-    assert min(row["omega_mass_75"] for row in explicit) > 1.5 * rows[0]["omega_mass_75"]
+    runs = show_literal.with_reference(pd.DataFrame(rows))
+    explicit = show_literal.torn_backwards(runs, "omega_first_loss")
+    assert len(explicit) == 4 and (explicit["coriolis"] == "explicit").all()
+    np.testing.assert_allclose(explicit["omega_first_loss"], explicit["solid_omega_first_loss"], rtol=0.05)
+    parts = explicit["scale"] * explicit["spin_share"] / explicit["true_omega_first_loss"]
+    np.testing.assert_allclose(parts, [0.5, 0.5, 0.8, 0.8], rtol=0.01)
     works(show_literal, rows)
 
 
@@ -308,10 +374,14 @@ def test_plan_names_every_piece_once():
             "lammps",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
-            assert pieces and f"validation_{check}" in schema.KINDS
+            assert pieces and import_module(f"ratd.validation.{check}").KIND in schema.KINDS
     full = plan.pieces["full"]["convergence"]
     assert full["q-S_BAM2_150nm_3"]["a_eff"] == pytest.approx(150e-9) and full["q-S_BAM2_150nm_3"]["seed"] == 3
     assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
+    large = full["large_BAM1_300nm_2"]
+    assert large["a_eff"] == pytest.approx(300e-9) and large["epsilon_large"] and "step_epsilon" not in large
+    printed = plan.pieces["full"]["literal"]
+    assert len({(piece["type"], piece["a_eff"], piece["seed"]) for piece in printed.values()}) == len(printed) >= 8
 
 
 def test_plan_names_what_is_missing(tmp_path):

@@ -14,18 +14,15 @@ from ratd.growth import grow
 from ratd.marks import disruption
 from ratd.materials import get_material
 from ratd.spinup import FIRST_LOSS, spin_up
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 COLUMNS = {
-    "study": ("", "what is varied: epsilon, timestep_factor, law, xi_c or T_vis"),
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "study": ("", "what is varied: epsilon, epsilon_large, timestep_factor, law, xi_c or T_vis"),
     "damping": ("", "treatment of the damping"),
     "law": ("", "spin-up law"),
     "outcome": ("", "how the run ended"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
+    **GRAIN_COLUMNS,
     "epsilon": ("1", "(d omega/dt)/omega^2"),
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "xi_c": ("m", "critical rolling displacement"),
@@ -48,7 +45,8 @@ def cases(settings):
     settings : dict
         ``production`` {epsilon, timestep_factor}, ``epsilon`` (list), ``step_epsilon`` (the epsilon at which steps and
         constants are compared), ``timestep_factor`` {implicit: list, explicit: list}, ``xi_c_nm`` and
-        ``viscous_time_ps`` (lists).
+        ``viscous_time_ps`` (lists). For a grain that is too large for all that: ``production`` and ``epsilon_large``
+        (list), nothing else.
 
     Returns
     -------
@@ -57,13 +55,15 @@ def cases(settings):
         [s or None].
     """
     plain = dict(
-        epsilon=settings["step_epsilon"],
+        epsilon=settings.get("step_epsilon"),
         timestep_factor=settings["production"]["timestep_factor"],
         damping="implicit",
         law=SPIN_UP_LAWS[CONSTANT_EPSILON],
         xi_c=None,
         viscous_time=None,
     )
+    if "epsilon_large" in settings:
+        return [plain | dict(study="epsilon_large", epsilon=epsilon) for epsilon in settings["epsilon_large"]]
     found = [plain | dict(study="epsilon", epsilon=epsilon) for epsilon in settings["epsilon"]]
     for damping, factors in settings["timestep_factor"].items():
         found += [plain | dict(study="timestep_factor", timestep_factor=f, damping=damping) for f in factors]
@@ -140,12 +140,9 @@ def spin_one(grain, case, max_steps=None):
     row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
     row |= dict(
         study=case["study"],
-        material=own.name,
-        type=grain.type,
+        **grain_values(grain),
         damping=case["damping"],
         law=case["law"],
-        a_eff=grain.effective_radius,
-        seed=grain.seed,
         epsilon=case["epsilon"],
         timestep_factor=case["timestep_factor"],
         xi_c=xi_c,

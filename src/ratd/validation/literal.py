@@ -1,30 +1,26 @@
 """The literal drive: what the printed equations give, against the spin-up rate, the time step and the Coriolis term.
 
-The printed equations leave an aggregate at rest in the inertial frame but for two things. An explicit Coriolis term
-feeds in energy at a rate ~ omega^2 dt, so that the aggregate comes apart at omega ~ (d omega/dt / dt)^(1/3)
-(docs/model.md). And the printed equation of the spins has no Euler term, which acts like an outer torque
-I_spin d omega/dt: the aggregate turns with omega I_spin/(I_orbit + I_spin), where I_spin is the sum of the monomers'
-own moments of inertia, and parts when that is the right threshold.
+The printed equations leave an aggregate at rest in the inertial frame but for two things (docs/model.md). The printed
+equation of the spins has no Euler term, which acts like an outer torque I_spin d omega/dt, where I_spin is the sum of
+the monomers' own moments of inertia. And an explicit Coriolis term, taken at the velocities half a step before, turns
+the aggregate backwards. `solid_omega` says where a solid grain parts under both.
 """
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from ratd.growth import grow
 from ratd.marks import disruption
 from ratd.shape import inertia_tensor, principal_axes
 from ratd.spinup import spin_up
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
 COLUMNS = {
     "drive": ("", "prescribed or literal"),
     "coriolis": ("", "treatment of the Coriolis term"),
-    "material": ("", "material"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
     "outcome": ("", "how the run ended"),
-    "a_eff": ("m", "effective radius"),
-    "seed": ("1", "seed of the grain"),
-    "n_monomers": ("1", "monomers"),
+    **GRAIN_COLUMNS,
     "angular_acceleration": ("rad s-2", "d omega/dt at the start"),
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "timestep": ("s", "first time step"),
@@ -34,9 +30,14 @@ COLUMNS = {
     **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
 }
 KIND = table_kind("literal", "The literal drive", COLUMNS)
-REFERENCE_EPSILON = 0.02
-LARGEST_OMEGA = 3.0
-"""Runs go on to so many times the omega at which the spins alone should have torn the grain apart."""
+REFERENCE = {"epsilon": 0.02, "timestep_factor": 0.05}
+"""Run of the consistent drive that the others are compared with."""
+EXPLICIT_END, EXACT_END = 1.25, 3.0
+"""Runs go on to so many times the omega at which a solid grain parts."""
+
+
+SOLID_END = 2.5
+"""omega/q (1 - share)^(2/3) by which Omega of `solid_omega` has grown without end, which it does at 1.515."""
 
 
 def spin_share(grain):
@@ -46,33 +47,92 @@ def spin_share(grain):
     return float(own / moments[0])
 
 
+def solid_omega(threshold, share, acceleration, timestep):
+    """Angular velocity of the frame at which a solid grain parts under the printed equations, explicit Coriolis term.
+
+    Parameters
+    ----------
+    threshold : float
+        Angular velocity in the inertial frame at which it parts [rad/s].
+    share : float
+        From `spin_share`.
+    acceleration : float
+        d omega/dt [rad/s2].
+    timestep : float
+        dt [s].
+
+    Returns
+    -------
+    omega : float
+        [rad/s]; NaN for a threshold that is NaN.
+    backwards : bool
+        Whether the grain then turns against the frame.
+
+    Notes
+    -----
+    In the frame a solid grain that turns with Omega in the inertial one has the velocity (Omega - omega) x X and the
+    acceleration -(omega - Omega)^2 X. The velocity half a step before lags by dt/2 times that, and the Coriolis term
+    makes of the lag the force m omega (omega - Omega)^2 dt along the circle, backwards. With the spins' missing Euler
+    term, and s the share,
+
+        d Omega/dt = s d omega/dt - (1 - s) omega (omega - Omega)^2 dt.
+
+    In units of q = (d omega/dt / dt)^(1/3) neither d omega/dt nor dt is left: omega/q where |Omega| is the threshold
+    depends on s and threshold/q alone. So omega ~ q for grains in which threshold/q is the same. For threshold << q,
+    omega^4 = 4 threshold q^3/(1 - s), a fourth root; for threshold >> q it is q times a number, at which Omega grows
+    without end.
+    """
+    if not np.isfinite(threshold):
+        return np.nan, False
+    unit = (acceleration / timestep) ** (1 / 3)
+
+    def slope(omega, turning):
+        return share - (1.0 - share) * omega * (omega - turning) ** 2
+
+    def parts(_, turning):
+        return abs(turning[0]) - threshold / unit
+
+    parts.terminal = True
+    found = solve_ivp(slope, (0.0, SOLID_END * (1.0 - share) ** (-2 / 3)), [0.0], events=parts, rtol=1e-9, atol=1e-12)
+    return float(found.t[-1] * unit), bool(found.y[0, -1] < 0.0)
+
+
 def compute(settings, progress=None):
     """Spin one grain up with the consistent drive once, then with the literal one in every way.
 
     Parameters
     ----------
     settings : dict
-        material, type, a_eff [m], seed, angular_acceleration (list) [rad/s2], timestep_factor (list).
+        material, type, a_eff [m], seed, part_of_limit (list: (d omega/dt / dt)^(1/3) over the omega at which the spins
+        alone tear the grain), timestep_factor (list).
     progress : callable, optional
         Called with a sentence after each run.
 
     Returns
     -------
     list of dict
-        Rows of `COLUMNS`. With the exact Coriolis term only the two fastest accelerations and the middle step are run.
+        Rows of `COLUMNS`. With the exact Coriolis term only the two greatest parts and the longest step are run.
     """
     grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
     share = spin_share(grain)
-    accelerations, factors = sorted(settings["angular_acceleration"]), settings["timestep_factor"]
-    reference = _row(grain, share, drive="prescribed", epsilon=REFERENCE_EPSILON, timestep_factor=0.05)
+    parts, factors = sorted(settings["part_of_limit"]), sorted(settings["timestep_factor"])
+    reference = _row(grain, share, drive="prescribed", **REFERENCE)
     rows = [reference]
-    runs = [(a, f, "explicit") for a in accelerations for f in factors]
-    runs += [(a, sorted(factors)[len(factors) // 2], "exact") for a in accelerations[-2:]]
+    runs = [(part, f, "explicit") for part in parts for f in factors]
+    runs += [(part, factors[-1], "exact") for part in parts[-2:]]
     # A grain whose last two monomers hold three quarters of its mass never loses one quarter.
     threshold = reference["omega_mass_75"] if reference["omega_mass_75"] > 0.0 else reference["omega_first_loss"]
-    for acceleration, factor, coriolis in runs:
-        limit = LARGEST_OMEGA * threshold / share
-        dt = reference["timestep"] * factor / reference["timestep_factor"]
+    limit = threshold / share
+    for part, f, coriolis in runs:
+        dt = reference["timestep"] * f / reference["timestep_factor"]
+        acceleration = (part * limit) ** 3 * dt
+        end = EXACT_END * limit
+        if coriolis == "explicit":
+            end = EXPLICIT_END * max(
+                solid_omega(own, share, acceleration, dt)[0]
+                for own in (reference[mark] for mark in MARKS)
+                if np.isfinite(own)
+            )
         rows.append(
             _row(
                 grain,
@@ -80,12 +140,12 @@ def compute(settings, progress=None):
                 drive="literal",
                 coriolis=coriolis,
                 angular_acceleration=acceleration,
-                timestep_factor=factor,
-                max_steps=int(limit / acceleration / dt),
+                timestep_factor=f,
+                max_steps=int(end / acceleration / dt),
             )
         )
         if progress is not None:
-            progress(f"{coriolis} {acceleration:g} {factor:g}: {rows[-1]['outcome']}")
+            progress(f"{coriolis} {acceleration:.2g} rad/s2, f = {f:g}: {rows[-1]['outcome']}")
     return rows
 
 
@@ -95,12 +155,8 @@ def _row(grain, share, **how):
     return dict(
         drive=how["drive"],
         coriolis=run.attrs["coriolis"],
-        material=grain.material.name,
-        type=grain.type,
         outcome=run.attrs["end_reason"],
-        a_eff=grain.effective_radius,
-        seed=grain.seed,
-        n_monomers=grain.n_monomers,
+        **grain_values(grain),
         angular_acceleration=run.attrs["angular_acceleration"],
         timestep_factor=run.attrs["timestep_factor"],
         timestep=run.attrs["timestep"],

@@ -68,28 +68,27 @@ class Plan:
         }[check](own)
 
     def _convergence(self, own):
-        shared = {"production": self.config["production"]} | {
+        production, large = {"production": self.config["production"]}, own["large"]
+        shared = production | {
             key: own[key] for key in ("epsilon", "step_epsilon", "timestep_factor", "xi_c_nm", "viscous_time_ps")
         }
-        return {
+        pieces = {
             f"{material}_{kind}_{size}nm_{seed}": shared
             | {"material": material, "type": kind, "a_eff": size * NM, "seed": seed}
             for material, kind, size, seed in product(
                 own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
             )
         }
+        once = production | {"material": large["material"], "epsilon_large": large["epsilon"]}
+        return pieces | {f"large_{name}": piece for name, piece in _each_grain(large["grains"], once).items()}
 
     def _pull_off(self, own):
         shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
         return {material: shared | {"material": material} for material in own["materials"]}
 
     def _literal(self, own):
-        shared = {key: own[key] for key in ("material", "angular_acceleration", "timestep_factor")}
-        return {
-            f"{grain['type']}_{grain['size_nm']}nm_{seed}": shared
-            | {"type": grain["type"], "a_eff": grain["size_nm"] * NM, "seed": seed}
-            for grain, seed in product(own["grains"], range(own["seeds"]))
-        }
+        shared = {key: own[key] for key in ("material", "part_of_limit", "timestep_factor")}
+        return _each_grain(own["grains"], shared)
 
     def _theory(self, own):
         shared = {"material": own["material"], "seeds": own["seeds"], **self.config["production"]}
@@ -132,9 +131,28 @@ class Plan:
         rotation = {"study": "rotation"} | {
             key: own[key] for key in ("material", "timestep_factor", "step", "rotations")
         }
-        return {f"force_{material}": forces | {"material": material} for material in own["materials"]} | {
-            f"{grain['type']}_{grain['size_nm']}nm_{seed}": rotation
-            | {"type": grain["type"], "a_eff": grain["size_nm"] * NM, "seed": seed}
-            for grain in own["grains"]
-            for seed in range(grain["seeds"])
-        }
+        curves = {f"force_{material}": forces | {"material": material} for material in own["materials"]}
+        return curves | _each_grain(own["grains"], rotation)
+
+
+def _each_grain(grains, shared):
+    """Pieces of one grain each.
+
+    Parameters
+    ----------
+    grains : list of dict
+        type, size_nm, seeds (number).
+    shared : dict
+        Settings of all.
+
+    Returns
+    -------
+    dict
+        Name of the piece -> its settings.
+    """
+    return {
+        f"{grain['type']}_{grain['size_nm']}nm_{seed}": shared
+        | {"type": grain["type"], "a_eff": grain["size_nm"] * NM, "seed": seed}
+        for grain in grains
+        for seed in range(grain["seeds"])
+    }

@@ -3,10 +3,10 @@
 import numpy as np
 
 from ratd.drives import SPIN_UP_LAWS
-from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
-from ratd.spinup import FIRST_LOSS
+from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
+from ratd.markdown import markdown_table, measured
+from ratd.spinup import EPSILON, FIRST_LOSS
 from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
-from ratd.validation.show.text import markdown_table, measured
 from ratd.validation.statistics import median_of
 
 GOAL = 0.03
@@ -20,6 +20,8 @@ MARK_TEXT = {
     "omega_contacts_75": "25 % of contacts lost",
 }
 SHOWN = MARKS[:3]
+IN_CELLS = ("omega_disr", "omega_first_loss", "omega_mass_75")
+"""Marks that are given by type and size too."""
 STUDIES = {
     "epsilon": r"$\epsilon = \dot\omega/\omega^2$",
     "timestep_factor": r"step factor $f$",
@@ -34,7 +36,7 @@ def ratios(table, study, finest=None):
     table : pandas.DataFrame
         Columns of `ratd.validation.convergence.COLUMNS`.
     study : str
-        epsilon, timestep_factor, xi_c or T_vis.
+        epsilon, epsilon_large, timestep_factor, xi_c or T_vis.
     finest : float, optional
         Value that the others are compared with; default: the least one.
 
@@ -45,7 +47,7 @@ def ratios(table, study, finest=None):
         marks, and ``broken``: the integration failed, never ended, or lost mass below `EARLY` times the finest run's
         first loss. Broken runs have NaN for ratios.
     """
-    column = {"T_vis": "viscous_time"}.get(study, study)
+    column = {"T_vis": "viscous_time", "epsilon_large": "epsilon"}.get(study, study)
     rows = table[table["study"] == study].copy()
     rows["x"] = rows[column]
     rows["grain"] = [
@@ -152,6 +154,8 @@ def tell(table):
     str
         Markdown.
     """
+    large = table["study"] == "epsilon_large"
+    every, table = table, table[~large]
     n = len(table[["material", "type", "a_eff", "seed"]].drop_duplicates())
     sizes = ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
     words = [
@@ -168,7 +172,16 @@ def tell(table):
     statistics = {mark: summary(rows, mark) for mark in MARKS}
     words.append(_table(statistics, "epsilon"))
     words.append(_recommend(statistics, "epsilon"))
-    words.append(_cells(rows))
+    words += [_cells(rows, mark) for mark in IN_CELLS]
+    words.append(_cells_within(rows))
+    if large.any():
+        rows = ratios(every, "epsilon_large")
+        words.append(
+            f"{plural(rows['grain'].nunique(), 'larger grain')}, with the smallest epsilon alone; "
+            "they have no part in the medians above:"
+        )
+        words += [_cells(rows, mark) for mark in IN_CELLS]
+        words.append(_cells_within(rows))
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -187,16 +200,38 @@ def tell(table):
     return "\n\n".join(words)
 
 
-def _cells(rows):
-    """A table: the first loss by type and size, against epsilon."""
+def _by_cell(rows):
+    """Rows of each type and size [nm]."""
+    return rows.groupby(["type", rows["a_eff"].mul(1e9).round()])
+
+
+def _cells(rows, mark):
+    """A table: a mark by type and size, against epsilon."""
     values = sorted(rows["x"].unique())
     lines = []
-    for (kind, size), part in rows.groupby(["type", rows["a_eff"].mul(1e9).round()]):
-        entries = {entry["x"]: entry for entry in summary(part, "omega_first_loss")}
+    for (kind, size), part in _by_cell(rows):
+        entries = {entry["x"]: entry for entry in summary(part, mark)}
         cells = [measured(entries[x]["median"], entries[x]["error"]) if x in entries else "–" for x in values]
-        lines.append([kind, f"{size:g}", *cells])
-    header = ["type", "size [nm]", *(f"epsilon = {x:g}" for x in values)]
-    return "omega_first_loss by type and size:\n\n" + markdown_table(header, lines)
+        lines.append([kind, f"{size:g}", part["grain"].nunique(), *cells])
+    header = ["type", "size [nm]", "grains", *(f"epsilon = {x:g}" for x in values)]
+    return f"{mark} by type and size:\n\n" + markdown_table(header, lines)
+
+
+def _cells_within(rows, goal=GOAL):
+    """A sentence: which cells are off by more than the goal at the epsilon of production."""
+    here = rows[np.isclose(rows["x"], EPSILON)]
+    if not len(here):
+        return f"No run has the epsilon of production, {EPSILON:g}."
+    parts = []
+    for mark in IN_CELLS:
+        found = [(cell, median_of(part[mark], part["grain"])) for cell, part in _by_cell(here)]
+        far = [
+            f"{kind} {size:g} nm {measured(s['median'], s['error'])}"
+            for (kind, size), s in found
+            if abs(s["median"] - 1.0) > goal
+        ]
+        parts.append(f"{mark} in {len(far)} of {len(found)} cells" + (f" ({', '.join(far)})" if far else ""))
+    return f"At epsilon = {EPSILON:g} the median is off by more than {100 * goal:g} %: " + "; ".join(parts) + "."
 
 
 def _laws(table):
