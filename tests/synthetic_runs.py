@@ -116,6 +116,21 @@ def make_run(
     return run
 
 
+def run_with_snapshots():
+    """A chain of three monomers that stretches and loses an end; the other is dropped by the last of five snapshots."""
+    run = make_run(1e8, n_monomers=3, contacts=2, end=2e8)
+    omega = np.array([0.1, 0.5, 0.8, 1.0, 1.5]) * 1e8
+    place = np.array([-40e-9, 0, 40e-9]) * np.linspace(1, 1.4, 5)[:, None]
+    shape = ("snapshot", "monomer")
+    fragment = np.zeros((5, 3), int)
+    fragment[3:, 2], fragment[4, 0] = 1, -1
+    return run.assign(
+        snapshot_omega=("snapshot", omega), snapshot_x=(shape, place), snapshot_y=(shape, 0 * place),
+        snapshot_z=(shape, 0 * place), snapshot_fragment=(shape, fragment),
+        snapshot_normal_force=(shape, np.full((5, 3), -1e-9)), monomer_radius=("monomer", [20e-9] * 3),
+    )  # fmt: skip
+
+
 def make_table(
     materials=("a-C", "q-S", "co-S"),
     types=("BA", "BAM1", "BAM2"),

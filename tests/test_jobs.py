@@ -243,3 +243,12 @@ def test_locks_of_a_killed_snakemake_are_removed_and_those_of_a_live_one_are_not
     assert not lock.exists()
     fourth.kill()
     fourth.wait()
+
+
+def test_files_beside_the_modules_are_part_of_the_source(tmp_path, monkeypatch):
+    template = tmp_path / "template.html"
+    monkeypatch.setitem(jobs.READS, "grow", (str(template),))
+    template.write_text("one")
+    before = jobs.code_hash(SCRIPTS, "grow")
+    template.write_text("two")
+    assert jobs.code_hash(SCRIPTS, "grow") != before

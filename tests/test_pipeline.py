@@ -38,9 +38,10 @@ TINY = {
 }
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"
 RUNS = "results/tiny/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.nc"
-FIGURES = {"figure2", "figure4", "figure5", "figure6", "figure7", "figure8"}
+FIGURES = {"figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "grain_page"}
 COMMON_FIGURES = {"figure1", "figure10"}
-OF_RUNS = {"figure4", "figure5"}
+OF_SNAPSHOTS = {"figure5", "grain_page"}
+OF_RUNS = {"figure4"} | OF_SNAPSHOTS
 
 
 class Pipeline:
@@ -141,6 +142,8 @@ def test_every_stage_leaves_its_files(finished):
     for number in (2, 4, 5, 6, 7, 8):
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.pdf").read_bytes()[:5] == b"%PDF-"
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.png").read_bytes()[1:4] == b"PNG"
+    page = (finished.folder / "results/tiny/figures/grain_prescribed.html").read_text()
+    assert page.startswith("<!doctype html>") and "q-S BAM2 50 nm, seed 1" in page
     assert not [name for name in files if ".partial" in name or name.endswith(".tmp")]
     assert yaml.safe_load((finished.folder / "results/tiny/config.yaml").read_text())["types"] == ["BA", "BAM2"]
 
@@ -219,7 +222,7 @@ def test_change_of_a_script_reruns_its_stage_and_what_follows(copy_of, script, r
         ({"figures": TINY["figures"] | {"figure6": None}}, set()),
         ({"spin_up": {"epsilon": 0.3}}, {"spin_up", "disrupt", "ensemble"} | FIGURES),
         ({"ensemble": {"bootstrap": 30}}, {"ensemble"} | FIGURES - OF_RUNS),
-        ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES - {"figure5"}),
+        ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES - OF_SNAPSHOTS),
     ],
 )
 def test_change_of_the_config_reruns_what_depends_on_it(copy_of, change, rerun):

@@ -8,10 +8,11 @@ from matplotlib.text import Text
 
 from ratd.errors import InputError
 from ratd.figures.figure1 import figure1
-from ratd.figures.figure5 import LARGEST, figure5, fragment_colours, nearest_snapshots
+from ratd.figures.figure5 import figure5, nearest_snapshots
+from ratd.figures.snapshots import LARGEST, fragment_colours
 from ratd.figures.spheres import render, scale_length, view_axes
 from ratd.grain import Grain
-from synthetic_runs import make_run
+from synthetic_runs import make_run, run_with_snapshots
 
 
 def test_a_sphere_covers_its_disc_and_nothing_else():
@@ -64,20 +65,6 @@ def test_figure1_names_each_grain_and_its_numbers():
     assert "BA" in text and r"$N_\mathrm{con}$ = 1" in text and "seed 3" in text and "40.0 nm" in text
     with pytest.raises(InputError, match="no two of the same"):
         figure1([grain, grain])
-
-
-def run_with_snapshots():
-    run = make_run(1e8, n_monomers=3, contacts=2, end=2e8)
-    omega = np.array([0.1, 0.5, 0.8, 1.0, 1.5]) * 1e8
-    place = np.array([-40e-9, 0, 40e-9]) * np.linspace(1, 1.4, 5)[:, None]
-    shape = ("snapshot", "monomer")
-    fragment = np.zeros((5, 3), int)
-    fragment[3:, 2], fragment[4, 0] = 1, -1
-    return run.assign(
-        snapshot_omega=("snapshot", omega), snapshot_x=(shape, place), snapshot_y=(shape, 0 * place),
-        snapshot_z=(shape, 0 * place), snapshot_fragment=(shape, fragment),
-        snapshot_normal_force=(shape, np.full((5, 3), -1e-9)), monomer_radius=("monomer", [20e-9] * 3),
-    )  # fmt: skip
 
 
 def test_figure5_takes_the_nearest_snapshots_and_says_which():

@@ -34,6 +34,9 @@ WRITES = {
 }
 """Kinds of files that the script of a rule writes."""
 
+READS = {"grain_page": ("figures/grain_page.html", "figures/grain_page.js")}
+"""Files of ratd beside its modules that the script of a rule reads."""
+
 PROGRESS_INTERVAL = 10.0
 """Least time between two messages of progress of one grain [s]."""
 
@@ -52,10 +55,12 @@ def code_hash(scripts, rule):
     Returns
     -------
     str
-        See `ratd.provenance.source_hash`; the layout of the files that the rule writes is part of it.
+        See `ratd.provenance.source_hash`; the layout of the files that the rule writes, and the files of `READS`, are
+        part of it.
     """
     layout = [schema.fingerprint(kind) for kind in WRITES.get(rule, ())]
-    return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout)
+    texts = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in READS.get(rule, ())]
+    return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout + texts)
 
 
 def code_hashes(scripts):

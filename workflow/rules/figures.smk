@@ -147,6 +147,37 @@ rule figure5:
         "../scripts/figure5.py"
 
 
+rule grain_page:
+    input:
+        PLAN.figure5_files(
+            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        ),
+    output:
+        report(
+            "<results>/figures/grain_{drive}.html",
+            caption="../report/grain_page.rst",
+            category="Interactive",
+            labels={"page": "one grain coming apart", "drive": "{drive}"},
+        ),
+    log:
+        "<results>/logs/figures/grain_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/figures/grain_{drive}.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=30,
+    params:
+        code=CODE["grain_page"],
+        settings=lambda w: PLAN.figure(5, w.drive),
+    message:
+        "Make the page of one grain coming apart ({wildcards.drive})"
+    script:
+        "../scripts/grain_page.py"
+
+
 rule figure6:
     input:
         "<results>/ensemble/{drive}/grains.nc",
@@ -322,4 +353,8 @@ rule figures:
             "<results>/figures/figure{number}.{format}",
             number=PLAN.common_figures,
             format=["pdf", "png"],
+        ),
+        expand(
+            "<results>/figures/grain_{drive}.html",
+            drive=PLAN.config["drives"] if 5 in PLAN.figures else [],
         ),
