@@ -54,6 +54,7 @@ include: "workflow/rules/disruption.smk"
 include: "workflow/rules/ensemble.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/validation.smk"
+include: "workflow/rules/reproduction.smk"
 
 
 rule all:

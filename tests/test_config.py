@@ -54,6 +54,35 @@ def test_quick_is_three_of_each():
         ({"engine": "gpu"}, "engine is 'gpu'", "cpu or cuda"),
         ({"seeds": {"number": 0}}, "seeds.number is 0", "1 or more"),
         ({"seeds": {"first": -1}}, "seeds.first is -1", "0 or more"),
+        ({"seeds": {"fewer": [{"number": -1}]}}, "seeds.fewer[0].number is -1", "0 or more"),
+        ({"seeds": {"fewer": [{"number": 31}]}}, "seeds.fewer[0].number is 31", "0 to 30"),
+        ({"seeds": {"fewer": [{"types": ["BA"]}]}}, "seeds.fewer[0].number is missing", "0 or more"),
+        ({"seeds": {"fewer": [{"size": [50], "number": 1}]}}, "the key 'size' in seeds.fewer[0]", "sizes_nm"),
+        ({"seeds": {"fewer": [{"sizes_nm": [75], "number": 1}]}}, "seeds.fewer[0].sizes_nm[0] is 75", "550"),
+        ({"seeds": {"fewer": [{"drives": ["literal"], "number": 1}]}}, "seeds.fewer[0].drives[0]", "prescribed"),
+        ({"seeds": {"fewer": [{"number": 0}]}, "snapshots": {"grains": []}}, "fewer leaves no grain", "at least one"),
+        (
+            {"seeds": {"fewer": [{"types": ["BAM2"], "number": 0}]}, "snapshots": {"grains": []}},
+            "figures.figure4 is a cell that seeds.fewer leaves out",
+            "or null",
+        ),
+        (
+            {"seeds": {"fewer": [{"sizes_nm": [350], "number": 0}]}},
+            "snapshots.grains[0].seed is 0",
+            "seeds.fewer leaves the cell out",
+        ),
+        (
+            {
+                "drives": ["prescribed", "literal"],
+                "seeds": {"first": 3, "fewer": [{"drives": ["literal"], "number": 2}]},
+            }
+            | {
+                "snapshots": {"grains": [{"material": "q-S", "type": "BAM2", "size_nm": 350, "seed": 6}]},
+                "figures": {"figure1": None, "figure5": {"seed": 6}},
+            },
+            "figures.figure5.seed (drive literal) is 6",
+            "3 to 4",
+        ),
         ({"seed": 3}, "the key 'seed' is unknown", "seeds"),
         ({"spin_up": {"epsilom": 1}}, "the key 'epsilom' in spin_up is unknown", "epsilon"),
         ({"spin_up": {"epsilon": "1e-2"}}, "spin_up.epsilon is '1e-2'", "a number above 0"),
@@ -123,7 +152,7 @@ def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added(
             "figures": {"figure1": None, "figure5": None},
         }
     )
-    assert plan.blocks == ["5-7", "8-10", "11-11"]
+    assert plan.blocks() == ["5-7", "8-10", "11-11"]
     more = with_changes(
         {
             "seeds": {"first": 5, "number": 12},
@@ -132,9 +161,66 @@ def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added(
             "figures": {"figure1": None, "figure5": None},
         }
     )
-    assert more.blocks[:2] == plan.blocks[:2]
-    assert with_changes({"block_size": 1}).blocks[-1] == "29-29"
-    assert with_changes({"block_size": 100}).blocks == ["0-29"]
+    assert more.blocks()[:2] == plan.blocks()[:2]
+    assert with_changes({"block_size": 1}).blocks()[-1] == "29-29"
+    assert with_changes({"block_size": 100}).blocks() == ["0-29"]
+
+
+FEWER = {
+    "drives": ["prescribed", "literal"],
+    "seeds": {
+        "number": 12,
+        "fewer": [
+            {"types": ["BA"], "sizes_nm": [500, 550], "number": 3},
+            {"drives": ["literal"], "sizes_nm": [100, 500, 550], "number": 1},
+            {"types": ["BA"], "sizes_nm": [550], "number": 0},
+        ],
+    },
+}
+
+
+def test_later_entries_of_fewer_stand_over_earlier_ones():
+    plan = with_changes(FEWER)
+    numbers = {
+        (drive, size): len(plan.seeds_of(("q-S", "BA", size), drive))
+        for drive in ("prescribed", "literal")
+        for size in ("550", "500", "100", "50")
+    }
+    prescribed = {"550": 0, "500": 3, "100": 12, "50": 12}
+    literal = {"550": 0, "500": 1, "100": 1, "50": 12}
+    assert numbers == {("prescribed", size): n for size, n in prescribed.items()} | {
+        ("literal", size): n for size, n in literal.items()
+    }
+    assert len(plan.seeds_of(("a-C", "BAM2", "550"), "literal")) == 1
+
+
+def test_grains_are_grown_for_the_drive_that_wants_most_and_shared():
+    plan = with_changes(FEWER)
+    cell = ("q-S", "BA", "500")
+    assert plan.blocks(cell, "prescribed") == ["0-2"] and plan.blocks(cell, "literal") == ["0-0"]
+    assert plan.blocks(cell) == ["0-2"] and plan.grown_block(cell, "0-0") == "0-2"
+    assert plan.blocks(("q-S", "BA", "50"), "literal") == ["0-9", "10-11"]
+    path = "{material}/{type}/{size}/{seeds}"
+    assert len(plan.files(path, "prescribed")) == 3 * (3 * 9 * 2 + 2 * 2 * 2 + 1)
+    assert len(plan.files(path)) == len(plan.files(path, "prescribed"))
+    # of BAM1 and BAM2 at 500 and 550 nm, and of all at 100 nm, literal needs the first block only
+    assert len(plan.grown_files(path, "literal")) == 3 * (3 * 8 * 2 + 3 + 2 * 2 + 1)
+    assert "q-S/BA/500/0-2" in plan.grown_files(path, "literal")
+    assert not [name for name in plan.files(path) if "/BA/550/" in name]
+    assert set(plan.pattern("blocks").split("|")) == {"0\\-9", "10\\-11", "0\\-2", "0\\-0"}
+
+
+def test_figure_1_grows_what_nothing_else_needs():
+    plan = with_changes(FEWER | {"figures": {"figure1": {"sizes_nm": [550]}}})
+    assert "q-S/BA/550/0-9" in plan.figure1_files("{material}/{type}/{size}/{seeds}")
+
+
+def test_fewer_seeds_leave_the_jobs_of_other_cells_alone():
+    plan, all_seeds = with_changes(FEWER), with_changes({"drives": FEWER["drives"], "seeds": {"number": 12}})
+    cell = ("q-S", "BAM2", "350")
+    assert plan.blocks(cell, "prescribed") == all_seeds.blocks(cell, "prescribed") == ["0-9", "10-11"]
+    assert plan.spin_up("prescribed", *cell, "0-9") == all_seeds.spin_up("prescribed", *cell, "0-9")
+    assert plan.grow(*cell) == all_seeds.grow(*cell)
 
 
 def test_settings_hold_what_a_stage_depends_on_and_nothing_else():

@@ -81,7 +81,9 @@ def test_pipeline_writes_the_files_of_the_other_engine(tmp_path):
         pipeline.environment |= SIMULATED
         (pipeline.folder / "tiny.yaml").write_text(yaml.safe_dump(TINY | {"engine": engine}))
         planned = pipeline.planned("spinups")
-        assert planned["spin_up_cuda" if engine == "cuda" else "spin_up"] == (1 if engine == "cuda" else 2)
+        jobs = {name: n for name, n in planned.items() if name.startswith("spin_up")}
+        cuda = {f"spin_up_cuda_prescribed_q-S_{kind}": 1 for kind in TINY["types"]}
+        assert jobs == (cuda if engine == "cuda" else {"spin_up": 2})
         done = pipeline.run("spinups")
         assert done.returncode == 0, done.stdout
         assert pipeline.planned("spinups") == {}

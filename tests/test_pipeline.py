@@ -98,7 +98,7 @@ class Pipeline:
         if "Nothing to be done" in done.stdout:
             return {}
         table = done.stdout.split("Job stats:")[1].split("total")[0]
-        return {rule: int(n) for rule, n in re.findall(r"^(\w+) +(\d+)$", table, re.M) if rule != "all"}
+        return {rule: int(n) for rule, n in re.findall(r"^([\w-]+) +(\d+)$", table, re.M) if rule != "all"}
 
     def files(self):
         """Path of every result -> hash of its content; not the logs and benchmarks, which tell the time."""

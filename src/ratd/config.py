@@ -239,15 +239,19 @@ def check(config, schemas="config/schema"):
         if sum(value is not None for value in laws.values()) != 1:
             where = "spin_up and literal together" if drive == "literal" else "spin_up"
             raise InputError(f"config: {where} give {laws}; allowed: a number for one of them and null for the other")
+    _check_fewer(plan)
     for k, grain in enumerate(config["snapshots"]["grains"]):
         plan.find_cell(grain, f"snapshots.grains[{k}]")
-        if grain["seed"] not in plan.seeds:
-            raise InputError(
-                f"config: snapshots.grains[{k}].seed is {grain['seed']}; allowed: {plan.seeds[0]} to {plan.seeds[-1]}"
-            )
+        plan.find_seed(grain["seed"], plan.seeds_of(_cell(grain)), f"snapshots.grains[{k}].seed")
     figure4, figure6 = config["figures"]["figure4"], config["figures"]["figure6"]
     if figure4 is not None:
         plan.find_cell(figure4, "figures.figure4")
+        for drive in config["drives"]:
+            if not plan.seeds_of(_cell(figure4), drive):
+                raise InputError(
+                    f"config: figures.figure4 is a cell that seeds.fewer leaves out for the drive {drive}; "
+                    "allowed: a cell with grains for every drive, or null"
+                )
     if figure6 is not None:
         plan.find(figure6["material"], "materials", "figures.figure6.material")
         for k, size in enumerate(figure6["sizes_nm"]):
@@ -257,16 +261,39 @@ def check(config, schemas="config/schema"):
         plan.find(figure1["material"], "materials", "figures.figure1.material")
         for k, size in enumerate(figure1["sizes_nm"]):
             plan.find(size, "sizes_nm", f"figures.figure1.sizes_nm[{k}]")
-        if figure1["seed"] not in plan.seeds:
-            raise InputError(
-                f"config: figures.figure1.seed is {figure1['seed']}; allowed: {plan.seeds[0]} to {plan.seeds[-1]}"
+        plan.find_seed(figure1["seed"], plan.seeds, "figures.figure1.seed")
+    if figure5 is not None:
+        if figure5 not in config["snapshots"]["grains"]:
+            raise InputError(f"config: figures.figure5 is {figure5}; allowed: one of snapshots.grains, or null")
+        for drive in config["drives"]:
+            plan.find_seed(
+                figure5["seed"], plan.seeds_of(_cell(figure5), drive), f"figures.figure5.seed (drive {drive})"
             )
-    if figure5 is not None and figure5 not in config["snapshots"]["grains"]:
-        raise InputError(f"config: figures.figure5 is {figure5}; allowed: one of snapshots.grains, or null")
     if figure8 is not None:
         for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
             plan.find(figure8[name], key, f"figures.figure8.{name}")
     return plan
+
+
+def _check_fewer(plan):
+    """Raise InputError unless `seeds.fewer` names what the ensemble has, and leaves each drive a grain."""
+    for k, entry in enumerate(plan.fewer):
+        where = f"seeds.fewer[{k}]"
+        for key in ("drives", "materials", "types", "sizes_nm"):
+            for j, value in enumerate(entry.get(key, ())):
+                plan.find(value, key, f"{where}.{key}[{j}]")
+        if entry["number"] > len(plan.seeds):
+            raise InputError(f"config: {where}.number is {entry['number']}; allowed: 0 to {len(plan.seeds)}")
+    for drive in plan.config["drives"]:
+        if not plan.cells_of(drive):
+            raise InputError(
+                f"config: seeds.fewer leaves no grain for the drive {drive}; allowed: at least one cell with seeds"
+            )
+
+
+def _cell(names):
+    """(material, type, size) of a mapping with material, type and size_nm, the size as in `Plan.sizes`."""
+    return names["material"], names["type"], size_label(names["size_nm"])
 
 
 def _check_finite(value, path):
@@ -318,10 +345,101 @@ class Plan:
         return range(first, first + self.config["seeds"]["number"])
 
     @property
-    def blocks(self):
-        """Blocks of seeds as they stand in names of files, list of str such as ``"0-9"``."""
+    def fewer(self):
+        """What `seeds.fewer` says of cells with fewer seeds, list of dict; a later one stands over earlier ones."""
+        return self.config["seeds"].get("fewer", [])
+
+    def seeds_of(self, cell, drive=None):
+        """Seeds of one cell, a range from the first seed on.
+
+        Parameters
+        ----------
+        cell : tuple of str
+            (material, type, size), one of `cells`.
+        drive : str, optional
+            Seeds that this drive spins up; default: those that are grown, the most that any drive wants.
+
+        Returns
+        -------
+        range
+        """
+        if drive is None:
+            return max((self.seeds_of(cell, own) for own in self.config["drives"]), key=len)
+        number = len(self.seeds)
+        for entry in self.fewer:
+            names = {"drives": drive, "materials": cell[0], "types": cell[1]}
+            sizes = entry.get("sizes_nm")
+            if all(name in entry.get(key, [name]) for key, name in names.items()) and (
+                sizes is None or cell[2] in map(size_label, sizes)
+            ):
+                number = entry["number"]
+        return self.seeds[:number]
+
+    def blocks(self, cell=None, drive=None):
+        """Blocks of seeds as they stand in names of files.
+
+        Parameters
+        ----------
+        cell : tuple of str, optional
+            See `seeds_of`; default: those of a cell with all seeds.
+        drive : str, optional
+            See `seeds_of`.
+
+        Returns
+        -------
+        list of str
+            Such as ``"0-9"``; the last one may be shorter than `block_size`.
+        """
+        return self._split(self.seeds if cell is None else self.seeds_of(cell, drive))
+
+    def _split(self, seeds):
         step = self.config["block_size"]
-        return [f"{part[0]}-{part[-1]}" for part in (self.seeds[k : k + step] for k in range(0, len(self.seeds), step))]
+        return [f"{part[0]}-{part[-1]}" for part in (seeds[k : k + step] for k in range(0, len(seeds), step))]
+
+    def grown_block(self, cell, block):
+        """Block of grown grains in which the grains of a block of some drive are, see `blocks`."""
+        first = int(block.partition("-")[0])
+        seeds = self.seeds_of(cell)
+        return self._block_with(first, seeds if first in seeds else self.seeds)
+
+    def _block_with(self, seed, seeds):
+        return self._split(seeds)[(seed - self.seeds[0]) // self.config["block_size"]]
+
+    def files(self, path, drive=None):
+        """Names of the files of all blocks of all cells.
+
+        Parameters
+        ----------
+        path : str
+            With the fields ``{material}``, ``{type}``, ``{size}``, ``{seeds}``.
+        drive : str, optional
+            Cells and seeds that this drive spins up; default: those that are grown.
+
+        Returns
+        -------
+        list of str
+            In the order of `cells`.
+        """
+        return [
+            self.file(path, cell, seeds=block) for cell in self.cells_of(drive) for block in self.blocks(cell, drive)
+        ]
+
+    def grown_files(self, path, drive):
+        """Files of the grown grains that a drive spins up, see `files`; they may hold more seeds than it wants."""
+        return [
+            self.file(path, cell, seeds=block)
+            for cell in self.cells_of(drive)
+            for block in self.blocks(cell)[: len(self.blocks(cell, drive))]
+        ]
+
+    @staticmethod
+    def file(path, cell, **names):
+        """Name of one file of a cell, see `files`."""
+        return path.format(material=cell[0], type=cell[1], size=cell[2], **names)
+
+    def cells_of(self, drive=None):
+        """Those of `cells` that a drive spins up at least one grain of; default: that are grown."""
+        return [cell for cell in self.cells if self.seeds_of(cell, drive)]
 
     @property
     def cells(self):
@@ -358,51 +476,55 @@ class Plan:
         -------
         str
         """
-        values = getattr(self, name) if name in ("sizes", "blocks") else self.config[name]
+        if name == "blocks":
+            drives = (None, *self.config["drives"])
+            values = {block for cell in self.cells for drive in drives for block in self.blocks(cell, drive)}
+            values = sorted(values | set(self.blocks()))
+        else:
+            values = self.sizes if name == "sizes" else self.config[name]
         return "|".join(re.escape(value) for value in values)
 
-    def figure4_files(self, path):
+    def figure4_files(self, path, drive=None):
         """Files of all blocks of the cell that figure 4 shows.
 
         Parameters
         ----------
         path : str
             With the fields ``{material}``, ``{type}``, ``{size}``, ``{seeds}``.
+        drive : str, optional
+            See `seeds_of`.
 
         Returns
         -------
         list of str
             Empty where the figure is left out.
         """
-        cell = self.config["figures"]["figure4"]
-        if cell is None:
+        own = self.config["figures"]["figure4"]
+        if own is None:
             return []
-        names = {"material": cell["material"], "type": cell["type"], "size": size_label(cell["size_nm"])}
-        return [path.format(**names, seeds=block) for block in self.blocks]
-
-    def block_of(self, seed):
-        """The block of a seed, as in `blocks`."""
-        return self.blocks[(seed - self.seeds[0]) // self.config["block_size"]]
+        return [self.file(path, _cell(own), seeds=block) for block in self.blocks(_cell(own), drive)]
 
     def figure1_files(self, path):
-        """Files with the grains that figure 1 shows, see `figure4_files`."""
+        """Files with the grains that figure 1 shows, see `figure4_files`.
+
+        A grain that no drive spins up is grown for the figure, in a block of a cell with all seeds.
+        """
         own = self.config["figures"]["figure1"]
         if own is None:
             return []
-        block = self.block_of(own["seed"])
+        cells = [(own["material"], kind, size_label(size)) for kind in self.config["types"] for size in own["sizes_nm"]]
         return [
-            path.format(material=own["material"], type=kind, size=size_label(size), seeds=block)
-            for kind in self.config["types"]
-            for size in own["sizes_nm"]
+            self.file(path, cell, seeds=self._block_with(own["seed"], seeds if own["seed"] in seeds else self.seeds))
+            for cell, seeds in ((cell, self.seeds_of(cell)) for cell in cells)
         ]
 
-    def figure5_files(self, path):
+    def figure5_files(self, path, drive=None):
         """File with the run that figure 5 shows, in a list, see `figure4_files`."""
         own = self.config["figures"]["figure5"]
         if own is None:
             return []
-        names = {"material": own["material"], "type": own["type"], "size": size_label(own["size_nm"])}
-        return [path.format(**names, seeds=self.block_of(own["seed"]))]
+        cell = _cell(own)
+        return [self.file(path, cell, seeds=self._block_with(own["seed"], self.seeds_of(cell, drive)))]
 
     @property
     def radii(self):
@@ -421,6 +543,12 @@ class Plan:
             raise InputError(
                 f"config: {where} is {value!r}; allowed: one of the {key}, {', '.join(map(str, self.config[key]))}"
             )
+
+    def find_seed(self, seed, seeds, where):
+        """Raise InputError unless a seed is one of a range."""
+        if seed not in seeds:
+            allowed = f"{seeds[0]} to {seeds[-1]}" if seeds else "none, seeds.fewer leaves the cell out"
+            raise InputError(f"config: {where} is {seed}; allowed: {allowed}")
 
     def find_cell(self, cell, where):
         """Raise InputError unless the ensemble has a cell, a dict with material, type and size_nm."""

@@ -187,7 +187,7 @@ def cell_statistics(table, by=("material", "type", "a_eff")):
     """
     table = _as_frame(table, "cell_statistics", by)
     numbers = [name for name in table.select_dtypes("number") if name not in (*by, "seed")]
-    keys = [_picometres(table[name]).rename(name) if name == "a_eff" else table[name] for name in by]
+    keys = [size_key(table[name]).rename(name) if name == "a_eff" else table[name] for name in by]
     groups = table.groupby(keys, sort=False, dropna=False)
     parts = {name: groups[name].first() for name in by}
     parts["n_grains"] = groups.size()
@@ -283,13 +283,13 @@ def fit_ensemble(
         material = get_material(material_name) if materials is None else get_material(material_name, materials)
         for j, kind in enumerate(types_here):
             rows = table[usable & (table["material"] == material_name) & (table["type"] == kind)]
-            size = _picometres(rows["a_eff"]).to_numpy()
+            size = size_key(rows["a_eff"]).to_numpy()
             n_grains[i, j], n_sizes[i, j] = len(rows), len(np.unique(size))
             x = np.log(rows["n_contacts"].to_numpy(float) * rows["filling_factor"].to_numpy(float))
             if len(rows) < 3 or n_sizes[i, j] < 2 or np.ptp(x) == 0:
                 missing.append(f"{material_name} {kind}: {len(rows)} usable grains of {n_sizes[i, j]} sizes")
                 continue
-            drawn = _resample_within(size, n_bootstrap, _generator(seed, material_name, kind))
+            drawn = resample_within(size, n_bootstrap, _generator(seed, material_name, kind))
             for k, reading in enumerate(readings.values()):
                 radius = rows["mean_monomer_radius"].to_numpy(float) if reading == "own" else reading
                 unit = eq33(
@@ -425,7 +425,7 @@ def sort_cells(table):
             keys[f"{name}_rank"] = [rank.get(value, len(rank)) for value in table[name]]
             keys[name] = table[name].astype(str)
     if "a_eff" in table:
-        keys["a_eff"] = _picometres(table["a_eff"])
+        keys["a_eff"] = size_key(table["a_eff"])
     if "seed" in table:
         keys["seed"] = table["seed"]
     if keys.empty or not len(keys.columns):
@@ -447,8 +447,8 @@ def _describe(name):
     return {"units": units, "long_name": meaning} if units else {"long_name": meaning}
 
 
-def _picometres(a_eff):
-    """Sizes [m] as whole picometres, so that rounding in the last digit makes no new size."""
+def size_key(a_eff):
+    """Sizes [m], a Series, as whole picometres, so that rounding in the last digit makes no new size."""
     return np.rint(a_eff.astype(float) / 1e-12).astype(np.int64)
 
 
@@ -506,7 +506,7 @@ def _keyed(table, what):
         if name not in table:
             raise InputError(f"grain_table: the {what} have no '{name}'")
     table.index = pd.MultiIndex.from_arrays(
-        [table["material"], table["type"], _picometres(table["a_eff"]), table["seed"]], names=KEYS
+        [table["material"], table["type"], size_key(table["a_eff"]), table["seed"]], names=KEYS
     )
     if table.index.has_duplicates:
         material, kind, picometres, seed = table.index[table.index.duplicated()][0]
@@ -579,8 +579,22 @@ def _generator(seed, material, kind):
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, key])))
 
 
-def _resample_within(group, n, rng):
-    """Row numbers (n, len(group)) drawn with replacement within each group; None if every group has one row."""
+def resample_within(group, n, rng):
+    """Row numbers drawn with replacement within each group.
+
+    Parameters
+    ----------
+    group : numpy.ndarray, shape (rows,)
+        Group of each row.
+    n : int
+        Replicates.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    numpy.ndarray or None
+        Shape (n, rows), the rows of a group next to each other; None if every group has one row.
+    """
     rows = [np.flatnonzero(group == value) for value in np.unique(group)]
     if all(len(row) == 1 for row in rows):
         return None

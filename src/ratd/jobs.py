@@ -31,6 +31,7 @@ WRITES = {
     "ensemble": ("table", "cells", "fit"),
     "composition": ("table1", "table2"),
     "pairs": ("pairs",),
+    "reproduction_data": ("fragments",),
 }
 """Kinds of files that the script of a rule writes."""
 
@@ -130,6 +131,10 @@ class Job:
         Writes to the first log file of the rule and to the terminal.
     provenance : dict
         Attributes for the files that the job writes, from `ratd.provenance.provenance`.
+
+    Notes
+    -----
+    A rule and its script have the same name, or ``params.script`` is the name of the script.
     """
 
     def __init__(self, snakemake):
@@ -141,7 +146,8 @@ class Job:
         self._set_up_log()
         try:
             job = self._snakemake
-            if code_hash(job.scriptdir, job.rule) != job.params.code:
+            script = getattr(job.params, "script", job.rule)
+            if code_hash(job.scriptdir, script) != job.params.code:
                 raise InputError("the source was changed after snakemake was started: start the same command again")
             self.provenance = provenance(job.params.code, self.settings, job.input)
         except (InputError, FileError) as error:
@@ -185,12 +191,16 @@ class Job:
         material : ratd.materials.Material
             What the grains are made of.
         seeds : sequence of int
-            Seeds of the grains, in the order in which they stand in the file.
+            Seeds of the grains, in the order in which they stand in the file. Where the rule has the wildcard `seeds`,
+            those outside it are left out: a file of grains may hold more of them than a drive wants.
         make : callable
             ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.io`). Below the path `checkpoint` it may
             keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
             has another name and is never found.
         """
+        wanted = self._snakemake.wildcards.get("seeds")
+        if wanted:
+            seeds = [seed for seed in seeds if seed in seeds_of(wanted)]
         block = Block(Path(target), material, list(seeds), self.provenance)
 
         def make_all(waiting, done):
@@ -276,6 +286,12 @@ class Job:
                 )
 
         return say
+
+
+def seeds_of(block):
+    """Seeds of a block, a range, from its name such as ``"0-9"``."""
+    first, last = (int(seed) for seed in block.split("-"))
+    return range(first, last + 1)
 
 
 def duration(seconds):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import composition, ensemble, marks, pair, spinup
+from ratd import composition, ensemble, fragmentation, marks, pair, spinup
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -266,6 +266,22 @@ _FIT = {
 }
 
 
+_FRAGMENTS_RAGGED = ("fragment",)
+_FRAGMENTS = {
+    **{
+        name: Variable(
+            (ROW,), "i8" if name == "seed" else "f8" if units else "str", units, meaning, nan=name.endswith("_disr")
+        )
+        for name, (units, meaning) in fragmentation.COLUMNS.items()
+    },
+    **_row_sizes(_FRAGMENTS_RAGGED),
+    **{
+        name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
+        for name, (units, meaning) in fragmentation.FRAGMENT_COLUMNS.items()
+    },
+}
+
+
 def _entries(columns):
     """Variables of a table that is no ensemble of grains, one a column; text where it has no units."""
     return {
@@ -283,6 +299,7 @@ KINDS = {
     "fit": Kind("Fit of Eq. 33 to an ensemble, beside Table 3 of the paper", _FIT, ("drive",)),
     "table1": Kind("Table 1: ratios of elements in co-S", _entries(composition.TABLE_1_COLUMNS)),
     "table2": Kind("Table 2: properties of the materials", _entries(composition.TABLE_2_COLUMNS)),
+    "fragments": Kind("Fragments that leave grains", _FRAGMENTS, ("drive",), _FRAGMENTS_RAGGED),
     "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
 }
 """Kind of file -> its layout."""

@@ -3,10 +3,10 @@
 
 rule disrupt:
     input:
-        expand(
-            "<results>/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{seeds}.nc",
-            seeds=PLAN.blocks,
-        ),
+        lambda w: [
+            f"<results>/spinup/{w.drive}/{w.material}/{w.type}/{w.size}nm/seeds_{seeds}.nc"
+            for seeds in PLAN.blocks((w.material, w.type, w.size), w.drive)
+        ],
     output:
         "<results>/disruption/{drive}/{material}/{type}/{size}nm.nc",
     log:
@@ -35,5 +35,5 @@ rule disruptions:
         [
             f"<results>/disruption/{drive}/{material}/{type}/{size}nm.nc"
             for drive in PLAN.config["drives"]
-            for material, type, size in PLAN.cells
+            for material, type, size in PLAN.cells_of(drive)
         ],

@@ -3,10 +3,12 @@
 
 rule ensemble:
     input:
-        grains=rules.grains.input,
-        marks=[
-            f"<results>/disruption/{{drive}}/{material}/{type}/{size}nm.nc"
-            for material, type, size in PLAN.cells
+        grains=lambda w: PLAN.grown_files(
+            "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc", w.drive
+        ),
+        marks=lambda w: [
+            f"<results>/disruption/{w.drive}/{material}/{type}/{size}nm.nc"
+            for material, type, size in PLAN.cells_of(w.drive)
         ],
     output:
         table="<results>/ensemble/{drive}/grains.nc",

@@ -75,8 +75,9 @@ rule figure2:
 
 rule figure4:
     input:
-        PLAN.figure4_files(
-            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        lambda w: PLAN.figure4_files(
+            f"<results>/spinup/{w.drive}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc",
+            w.drive,
         ),
     output:
         pdf=report(
@@ -112,8 +113,9 @@ rule figure4:
 
 rule figure5:
     input:
-        PLAN.figure5_files(
-            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        lambda w: PLAN.figure5_files(
+            f"<results>/spinup/{w.drive}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc",
+            w.drive,
         ),
     output:
         pdf=report(

@@ -27,8 +27,4 @@ rule grow:
 
 rule grains:
     input:
-        [
-            f"<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
-            for material, type, size in PLAN.cells
-            for seeds in PLAN.blocks
-        ],
+        PLAN.files("<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"),

@@ -3,7 +3,12 @@
 
 rule spin_up:
     input:
-        "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc",
+        # a drive may want fewer seeds than are grown
+        lambda w: PLAN.file(
+            "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc",
+            (w.material, w.type, w.size),
+            seeds=PLAN.grown_block((w.material, w.type, w.size), w.seeds),
+        ),
     output:
         "<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc",
     log:
@@ -29,8 +34,10 @@ rule spin_up:
 rule spinups:
     input:
         [
-            f"<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+            path
             for drive in PLAN.config["drives"]
-            for material, type, size in PLAN.cells
-            for seeds in PLAN.blocks
+            for path in PLAN.files(
+                f"<results>/spinup/{drive}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc",
+                drive,
+            )
         ],

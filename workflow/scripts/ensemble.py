@@ -11,6 +11,8 @@ with Job(snakemake) as job:
     grains = [row for path in snakemake.input.grains for row in io.read_grain_columns(path)]
     marks = [row for path in snakemake.input.marks for row in io.read_marks(path)]
     table = grain_table(grains, marks)
+    # another drive may want more grains than this one
+    table = table[table["drive"] == settings["drive"]].reset_index(drop=True)
     cells = cell_statistics(table)
     fit = fit_ensemble(
         table,

@@ -4,13 +4,14 @@ from pathlib import Path
 
 from ratd import io
 from ratd.cuda.spin_up import spin_up_many
-from ratd.jobs import Block, Job
+from ratd.jobs import Block, Job, seeds_of
 
 with Job(snakemake) as job:
     blocks, grains, settings = [], {}, {}
     for path, target, own in zip(snakemake.input, snakemake.output, job.settings, strict=True):
         file = io.read(path, "grains")
-        found = {grain.seed: grain for grain in io.grains(file)}
+        wanted = seeds_of(Path(target).stem.removeprefix("seeds_"))
+        found = {grain.seed: grain for grain in io.grains(file) if grain.seed in wanted}
         blocks.append(Block(Path(target), io.material_of(file), list(found), job.provenance_of(own, [path])))
         grains[target], settings[target] = found, own
 

@@ -1,6 +1,7 @@
 """Which independent pieces each check is computed in: one job a piece."""
 
 from itertools import product
+from pathlib import Path
 
 from ratd.config import read_yaml
 from ratd.errors import InputError
@@ -52,6 +53,14 @@ class Plan:
         if check == "lammps":
             peer_lammps.load()
         return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
+
+    def existing(self, extent, checks):
+        """Those files of some checks that have been computed, dict of lists."""
+        found = {
+            check: [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent].get(check, ())]
+            for check in checks
+        }
+        return {check: [path for path in paths if Path(path).is_file()] for check, paths in found.items()}
 
     def _pieces(self, check, own):
         return {

@@ -1,0 +1,321 @@
+"""What the paper leaves open, asked of the table of all grains and of the fragments.
+
+Every function takes the table of one drive (`ratd.ensemble.grain_table`) and returns plain tables with errors.
+"""
+
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pandas as pd
+
+from ratd.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading, resample_within, size_key
+from ratd.errors import InputError
+from ratd.materials import get_material
+
+SPLIT = 300e-9
+"""Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
+N_BOOTSTRAP = 1000
+PREDICTORS = {
+    "Eq. 33": "Eq. 33, A and alpha of each material and type (18 numbers for the paper's nine)",
+    "cut bound": "c times the cut bound, one c for all grains",
+    "cut bound by type": "c times the cut bound, one c a type",
+}
+"""What is compared out of sample, and what each of them fits."""
+
+
+def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, materials=None):
+    """How well Eq. 33 and the cut bound predict omega of grains that they were not fitted to.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        What is predicted [rad s-1].
+    by : {"size", "fold"}
+        Which grains are left out together: all of one size, so that a prediction goes beyond the sizes of the fit, or
+        those of random folds.
+    folds : int
+        Number of random folds.
+    seed : int
+        Of the folds and of the bootstrap.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each of `PREDICTORS` and for each type and "all": scatter (root mean square of the residuals of
+        ln omega out of sample), error (bootstrap over grains), bias (mean residual, found - predicted), n_grains. Only
+        grains count that all predictors predict.
+
+    Raises
+    ------
+    InputError
+        If `by` is none of the two.
+    """
+    if by not in ("size", "fold"):
+        raise InputError(f"cross_validation: by is {by!r}, allowed are 'size' and 'fold'")
+    needed = [mark, "cut_bound", "n_contacts", "filling_factor", "a_eff"]
+    table = table[(table[needed].astype(float) > 0).all(axis=1)].reset_index(drop=True)
+    rng = np.random.Generator(np.random.PCG64(seed))
+    group = size_key(table["a_eff"]).to_numpy() if by == "size" else rng.permutation(len(table)) % folds
+    residual = pd.DataFrame(np.nan, index=table.index, columns=list(PREDICTORS))
+    for value in np.unique(group):
+        out = group == value
+        if out.all():
+            continue
+        train, test = table[~out], table[out]
+        residual.loc[out, "Eq. 33"] = np.log(test[mark] / _predict_eq33(train, test, mark, materials))
+        ratio = np.log(train[mark] / train["cut_bound"])
+        own = np.log(test[mark] / test["cut_bound"])
+        residual.loc[out, "cut bound"] = own - ratio.mean()
+        residual.loc[out, "cut bound by type"] = own - test["type"].map(ratio.groupby(train["type"]).mean())
+    known = residual.notna().all(axis=1)
+    rows = []
+    for kind in [*dict.fromkeys(table["type"]), "all"]:
+        chosen = known if kind == "all" else known & (table["type"] == kind)
+        for name in PREDICTORS:
+            values = residual.loc[chosen, name].to_numpy()
+            rows.append({"type": kind, "predictor": name, **_scatter(values, rng), "n_grains": len(values)})
+    return pd.DataFrame(rows)
+
+
+def _predict_eq33(train, test, mark, materials):
+    """Eq. 33 fitted to some grains, for others; NaN where there is no fit."""
+    fit = fit_ensemble(train, PAPER_MEAN_RADIUS, mark=mark, n_bootstrap=1, materials=materials)
+    reading = fit["mean_radius"].values[0]
+    predicted = np.full(len(test), np.nan)
+    for (name, kind), rows in test.reset_index(drop=True).groupby(["material", "type"]):
+        if name not in fit["material"].values or kind not in fit["type"].values:
+            continue
+        best = fit.sel(mean_radius=reading, material=name, type=kind)
+        material = get_material(name) if materials is None else get_material(name, materials)
+        scale = (rows["a_eff"], material.surface_energy, material.density, radius_of_reading(reading))
+        shape = (rows["n_contacts"], rows["filling_factor"], float(best["A"]), float(best["alpha"]))
+        predicted[rows.index] = eq33(*scale, *shape)
+    return predicted
+
+
+def _scatter(values, rng):
+    """Root mean square with its bootstrap error, and mean."""
+    if len(values) < 2:
+        return {"scatter": np.nan, "error": np.nan, "bias": np.nan}
+    drawn = values[rng.integers(len(values), size=(N_BOOTSTRAP, len(values)))]
+    return {
+        "scatter": float(np.sqrt(np.mean(values**2))),
+        "error": float(np.std(np.sqrt(np.mean(drawn**2, axis=1)), ddof=1)),
+        "bias": float(values.mean()),
+    }
+
+
+def slopes(table, mark="omega_disr", split=SPLIT, seed=0):
+    """d ln omega/d ln a_eff below and above a size, and their difference: whether omega flattens.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        omega [rad s-1].
+    split : float
+        Size [m]; grains of this size count on both sides.
+    seed : int
+        Of the bootstrap, which draws grains anew within each material and size.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type: below, above, change (above - below) with `_error` (standard deviation of the bootstrap);
+        sizes_below, sizes_above, n_grains. Materials are taken together, each with a level of its own. NaN where a side
+        has fewer than two sizes.
+    """
+    table = table[table[mark].astype(float) > 0]
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    for kind, part in table.groupby("type", sort=False):
+        size = size_key(part["a_eff"]).to_numpy()
+        edge = size_key(pd.Series([split])).iloc[0]
+        cell = part.groupby(["material", size], sort=False).ngroup().to_numpy()
+        material = pd.factorize(part["material"])[0]
+        x, y = np.log(part["a_eff"].to_numpy(float)), np.log(part[mark].to_numpy(float))
+        sides = {"below": size <= edge, "above": size >= edge}
+        drawn = resample_within(cell, N_BOOTSTRAP, rng)
+        row = {"type": kind, "n_grains": len(part)}
+        replicates = {}
+        for side, chosen in sides.items():
+            n_sizes = len(np.unique(size[chosen]))
+            row[f"sizes_{side}"] = n_sizes
+            row[side], replicates[side] = np.nan, np.full(N_BOOTSTRAP, np.nan)
+            if n_sizes < 2:
+                continue
+            row[side] = _common_slope(x[chosen], y[chosen], material[chosen])
+            if drawn is not None:
+                replicates[side] = np.array(
+                    [_common_slope(x[here], y[here], material[here]) for here in (d[chosen[d]] for d in drawn)]
+                )
+        row["change"] = row["above"] - row["below"]
+        replicates["change"] = replicates["above"] - replicates["below"]
+        rows.append(row | {f"{name}_error": float(np.std(values, ddof=1)) for name, values in replicates.items()})
+    return pd.DataFrame(rows)
+
+
+def _common_slope(x, y, group):
+    """Slope of y on x with a level of its own for each group."""
+    weight = np.bincount(group)
+    weight[weight == 0] = 1
+    x = x - (np.bincount(group, x) / weight)[group]
+    y = y - (np.bincount(group, y) / weight)[group]
+    return float(np.sum(x * y) / np.sum(x * x))
+
+
+def binomial_interval(k, n, confidence=0.95):
+    """Wilson's interval of a probability, k of n.
+
+    Parameters
+    ----------
+    k, n : int
+    confidence : float
+
+    Returns
+    -------
+    tuple of float
+        Low and high; NaN for n = 0.
+    """
+    if n == 0:
+        return math.nan, math.nan
+    z = NormalDist().inv_cdf(0.5 + confidence / 2)
+    p = k / n
+    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    return max(0.0, centre - half), min(1.0, centre + half)
+
+
+def oblate_counts(table, by=("type",), confidence=0.95):
+    """Oblate grains (b/a > c/b) at rest and at disruption.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    by : sequence of str
+        Columns that make a row.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The columns of `by`; for `start` and `disr`: NAME_oblate, NAME_known (grains with a shape), NAME_low, NAME_high.
+    """
+    rows = []
+    for keys, part in table.groupby(list(by), sort=False):
+        row = dict(zip(by, keys, strict=True))
+        for when in ("start", "disr"):
+            a, b, c = (part[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc")
+            known = np.isfinite(a) & np.isfinite(b) & np.isfinite(c) & (a > 0)
+            k, n = int(np.sum(b[known] ** 2 > a[known] * c[known])), int(known.sum())
+            low, high = binomial_interval(k, n, confidence)
+            row |= {f"{when}_oblate": k, f"{when}_known": n, f"{when}_low": low, f"{when}_high": high}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+MONOMER_BINS = (1, 2, 4, 11, np.inf)
+"""Edges of classes of fragments by number of monomers: 1, 2-3, 4-10, 11 and more."""
+MONOMER_CLASSES = ("1 monomer", "2–3", "4–10", "more than 10")
+
+
+def fragment_shares(fragments, stage, seed=0):
+    """Shares of fragments of different size in the mass and the number of those that left.
+
+    Parameters
+    ----------
+    fragments : pandas.DataFrame
+        From `ratd.fragmentation.fragment_table`.
+    stage : str
+        One of `ratd.fragmentation.STAGES`.
+    seed : int
+        Of the bootstrap over grains.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type and class: mass_share and number_share with `_error`; n_fragments, n_grains (that lost any).
+    """
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    chosen = fragments[fragments[stage]]
+    for kind, part in chosen.groupby("type", sort=False):
+        which = np.digitize(part["fragment_n_monomers"], MONOMER_BINS) - 1
+        grain = pd.factorize(part["grain"])[0]
+        n = grain.max() + 1
+        mass, number = np.zeros((n, len(MONOMER_CLASSES))), np.zeros((n, len(MONOMER_CLASSES)))
+        np.add.at(mass, (grain, which), part["mass_fraction"])
+        np.add.at(number, (grain, which), 1.0)
+        drawn = rng.integers(n, size=(N_BOOTSTRAP, n))
+        shares = {}
+        for name, values in (("mass_share", mass), ("number_share", number)):
+            total = values[drawn].sum(axis=1)
+            error = np.std(total / total.sum(axis=1, keepdims=True), axis=0, ddof=1)
+            shares[name] = values.sum(axis=0) / values.sum()
+            shares[f"{name}_error"] = error
+        for k, label in enumerate(MONOMER_CLASSES):
+            own = {name: float(values[k]) for name, values in shares.items()}
+            rows.append({"type": kind, "class": label, **own, "n_fragments": len(part), "n_grains": int(n)})
+    return pd.DataFrame(rows)
+
+
+def power_law(sizes, largest, seed=0, replicates=200):
+    """Power law p(n) ~ n^-s of the monomers of fragments, n from 1 to the largest possible, and whether it fits.
+
+    Parameters
+    ----------
+    sizes : array_like of int
+        Monomers of each fragment.
+    largest : int
+        Greatest possible number.
+    seed : int
+    replicates : int
+        Made-up samples of the fitted law, for the probability.
+
+    Returns
+    -------
+    dict
+        exponent (greatest likelihood) and its error; distance (Kolmogorov and Smirnov); probability that a sample of
+        the law lies as far from its own fit, low where the law is not justified; n. NaN for fewer than 10 fragments.
+
+    References
+    ----------
+    Clauset, Shalizi & Newman (2009), SIAM Review 51, 661.
+    """
+    sizes = np.asarray(sizes, dtype=np.int64)
+    if len(sizes) < 10 or len(np.unique(sizes)) < 2:
+        return {"exponent": np.nan, "error": np.nan, "distance": np.nan, "probability": np.nan, "n": len(sizes)}
+    n = np.arange(1, int(max(largest, sizes.max())) + 1)
+    counts = np.bincount(sizes, minlength=len(n) + 1)[1:]
+    exponent, distance, law = _fit_power_law(counts, n)
+    spread = np.sum(law * np.log(n) ** 2) - np.sum(law * np.log(n)) ** 2
+    rng = np.random.Generator(np.random.PCG64(seed))
+    made = [_fit_power_law(rng.multinomial(len(sizes), law), n)[1] for _ in range(replicates)]
+    return {
+        "exponent": exponent,
+        "error": 1.0 / math.sqrt(spread * len(sizes)),
+        "distance": distance,
+        "probability": float(np.mean(np.array(made) >= distance)),
+        "n": len(sizes),
+    }
+
+
+def _fit_power_law(counts, n):
+    """Exponent of greatest likelihood (by bisection of its condition, the mean of ln n), distance, probabilities."""
+    share = counts / counts.sum()
+    wanted = np.sum(share * np.log(n))
+    low, high = -5.0, 15.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        law = n ** (-middle)
+        law /= law.sum()
+        low, high = (middle, high) if np.sum(law * np.log(n)) > wanted else (low, middle)
+    return middle, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), law

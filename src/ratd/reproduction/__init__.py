@@ -1,0 +1,1 @@
+"""docs/reproduction.md: the paper's figures, tables and quoted numbers beside ours, from committed data alone."""

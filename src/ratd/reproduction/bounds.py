@@ -1,0 +1,88 @@
+"""What a grain can hold without any simulation, beside Eq. 33 with the printed Table 3."""
+
+import numpy as np
+import pandas as pd
+
+from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, eq33
+from ratd.materials import get_material
+
+
+def table3_omega(table, materials=None):
+    """omega [rad/s] of Eq. 33 with the printed A and alpha (<a_mon> = 20 nm) for each grain; NaN where none is printed.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    pandas.Series
+    """
+    result = pd.Series(np.nan, index=table.index)
+    for (name, kind), rows in table.groupby(["material", "type"]):
+        if (name, kind) not in TABLE_3:
+            continue
+        material = get_material(name) if materials is None else get_material(name, materials)
+        result[rows.index] = eq33(
+            rows["a_eff"],
+            material.surface_energy,
+            material.density,
+            PAPER_MEAN_RADIUS,
+            rows["n_contacts"],
+            rows["filling_factor"],
+            *TABLE_3[name, kind],
+        )
+    return result
+
+
+def strength_omega(table, materials=None):
+    """omega [rad/s] at which the mean tension at the mid-plane is the tensile strength of Tatsuuma et al. (2019).
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain; as in `ratd.bound.midplane_bound` the grain is a sphere of its own mass and filling factor.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    pandas.Series
+    """
+    result = pd.Series(np.nan, index=table.index)
+    for name, rows in table.groupby("material"):
+        material = get_material(name) if materials is None else get_material(name, materials)
+        phi = rows["filling_factor"].to_numpy(float)
+        outer = rows["a_eff"].to_numpy(float) * phi ** (-1.0 / 3.0)
+        radius = rows["mean_monomer_radius"].to_numpy(float)
+        strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
+        tension = midplane_tension(1.0, material.density, phi, outer)
+        result[rows.index] = np.sqrt(strength / tension)
+    return result
+
+
+def ratios(table, materials=None):
+    """The table of grains with the columns `printed_over_bound`, `strength_over_bound` and `found_over_bound`.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        omega of `table3_omega`, of `strength_omega` and omega_disr, each over the cut bound of the same grain.
+    """
+    return table.assign(
+        printed_over_bound=table3_omega(table, materials) / table["cut_bound"],
+        strength_over_bound=strength_omega(table, materials) / table["cut_bound"],
+        found_over_bound=table["omega_disr"] / table["cut_bound"],
+        printed_over_found=table3_omega(table, materials) / table["omega_disr"],
+    )

@@ -1,0 +1,151 @@
+"""The committed data that the document is drawn from: what is there, and where.
+
+Everything but the config may be missing: a drive, a figure, a study. What is not there is None.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import pandas as pd
+
+from ratd import io
+from ratd.config import check, read_yaml
+from ratd.fragmentation import fragment_table
+
+FOLDER = "docs/reproduction/data"
+CONFIG = "config.yaml"
+STUDIES = ("lammps", "literal")
+"""Checks of the validation that the document takes numbers from."""
+DRIVEN_FIGURES = {
+    2: {"table": "ensemble/{drive}/grains.nc"},
+    4: {"runs": "figure4/{drive}.nc"},
+    5: {"runs": "figure5/{drive}.nc"},
+    6: {"table": "ensemble/{drive}/grains.nc"},
+    7: {"table": "ensemble/{drive}/grains.nc", "fit": "ensemble/{drive}/table3.nc"},
+    8: {"table": "ensemble/{drive}/grains.nc"},
+}
+"""Number of a figure that has a drive -> the data that it is drawn from, below the folder."""
+COMMON_FIGURES = {1: "figure1/*.nc", 10: "pairs/*.nc"}
+"""Number of a figure without a drive -> pattern of its data."""
+
+
+@dataclass(frozen=True)
+class Data:
+    """A folder of data.
+
+    Parameters
+    ----------
+    folder : str
+        Such as `FOLDER`.
+    """
+
+    folder: str = FOLDER
+
+    def path(self, name):
+        """Path of a file, str."""
+        return str(Path(self.folder, name))
+
+    def has(self, name):
+        """Whether a file is there."""
+        return Path(self.folder, name).is_file()
+
+    @property
+    def files(self):
+        """All data, sorted list of str; none where there is no config, without which they cannot be read."""
+        files = [str(path) for path in sorted(Path(self.folder).rglob("*.nc"))]
+        return [*files, self.path(CONFIG)] if self.has(CONFIG) else []
+
+    @cached_property
+    def plan(self):
+        """`ratd.config.Plan` of the config that the data were made with."""
+        return check(read_yaml(self.path(CONFIG)))
+
+    @property
+    def drives(self):
+        """Drives with a table of grains, in the order of the config; none without data."""
+        if not self.has(CONFIG):
+            return []
+        return [drive for drive in self.plan.config["drives"] if self.has(f"ensemble/{drive}/grains.nc")]
+
+    def figure_files(self, number, drive=None):
+        """Data of a figure, empty where some are missing or the config leaves the figure out.
+
+        Returns
+        -------
+        dict of str to str or list of str
+            Name of an input -> path or paths.
+        """
+        if self.plan.config["figures"].get(f"figure{number}", ()) is None:
+            return {}
+        if number in COMMON_FIGURES:
+            paths = sorted(str(path) for path in Path(self.folder).glob(COMMON_FIGURES[number]))
+            return {"data": paths} if paths else {}
+        names = {key: name.format(drive=drive) for key, name in DRIVEN_FIGURES[number].items()}
+        return {key: self.path(name) for key, name in names.items()} if all(map(self.has, names.values())) else {}
+
+    @property
+    def figures(self):
+        """Names of the figures of the paper that can be drawn, list of str such as "figure7_literal"."""
+        if not self.drives:
+            return []
+        names = [f"figure{number}" for number in COMMON_FIGURES if self.figure_files(number)]
+        names += [f"figure{number}_{drive}" for number in DRIVEN_FIGURES for drive in self.drives
+                  if self.figure_files(number, drive)]  # fmt: skip
+        return names
+
+    @property
+    def further_figures(self):
+        """Names of the figures that the paper does not have, as far as there are data for them, list of str."""
+        names = ["bound"] if self.drives else []
+        if any(self.has(f"fragments/{drive}.nc") for drive in self.drives):
+            names.append("fragments")
+        return names + [name for name in STUDIES if self.drives and self.has(f"validation/{name}.nc")]
+
+    def _each_drive(self, name, read):
+        return {drive: read(self.path(name.format(drive=drive))) for drive in self.drives
+                if self.has(name.format(drive=drive))}  # fmt: skip
+
+    @cached_property
+    def tables(self):
+        """Drive -> table of its grains."""
+        return self._each_drive("ensemble/{drive}/grains.nc", io.read_table)
+
+    @cached_property
+    def fits(self):
+        """Drive -> fit of Eq. 33 beside Table 3."""
+        return self._each_drive("ensemble/{drive}/table3.nc", io.read_fit)
+
+    @cached_property
+    def fragments(self):
+        """Drive -> table of fragments, see `ratd.fragmentation.fragment_table`."""
+        return self._each_drive("fragments/{drive}.nc", lambda path: fragment_table(io.read(path, "fragments")))
+
+    @cached_property
+    def course(self):
+        """Drive -> spin-up runs of the cell of Fig. 4, list of datasets."""
+        return self._each_drive("figure4/{drive}.nc", io.read_runs)
+
+    @cached_property
+    def grains(self):
+        """Grains of Fig. 1, list of `ratd.Grain`."""
+        paths = self.figure_files(1).get("data", []) if self.drives else []
+        return [grain for path in paths for grain in io.read_grains(path)]
+
+    @cached_property
+    def pairs(self):
+        """Pairs of Fig. 10, a table, or None."""
+        paths = sorted(Path(self.folder, "pairs").glob("*.nc"))
+        return (
+            pd.concat([io.read(path, "pairs").to_dataframe() for path in paths], ignore_index=True) if paths else None
+        )
+
+    def study(self, name):
+        """Table of a check of the validation, one of `STUDIES`, or None."""
+        # not at the head: the Snakefile needs this module to be read in no time
+        from ratd.validation import lammps, literal
+        from ratd.validation.tables import read_tables
+
+        kind = {"lammps": lammps.KIND, "literal": literal.KIND}[name]
+        path = f"validation/{name}.nc"
+        return read_tables([self.path(path)], kind) if self.has(path) else None

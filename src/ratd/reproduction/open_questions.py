@@ -1,0 +1,134 @@
+"""Beyond the paper: predictors, flattening, fragments, shapes."""
+
+import numpy as np
+
+from ratd.beyond import (
+    MONOMER_CLASSES,
+    PREDICTORS,
+    cross_validation,
+    fragment_shares,
+    oblate_counts,
+    power_law,
+    slopes,
+)
+from ratd.fragmentation import STAGES
+from ratd.markdown import markdown_table
+from ratd.reproduction.text import NOTHING, interval, number, with_error
+
+JUSTIFIED = 0.1
+"""Probability below which a power law is not given (Clauset et al. 2009)."""
+LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out"}
+
+
+def predictor_section(data):
+    """Out-of-sample scatter of Eq. 33 and of the cut bound."""
+    parts = [
+        "Scatter of ln omega_disr of grains that the prediction was not fitted to (root mean square; 0.1 is about "
+        "10 %), with its bootstrap error. " + "; ".join(f"{name}: {text}" for name, text in PREDICTORS.items()) + "."
+    ]
+    for drive, table in data.tables.items():
+        rows = []
+        for by, how in LEFT_OUT.items():
+            found = cross_validation(table, by=by, materials=data.plan.materials)
+            for kind, part in found.groupby("type", sort=False):
+                own = part.set_index("predictor")
+                cells = [with_error(own.loc[name, "scatter"], own.loc[name, "error"]) for name in PREDICTORS]
+                known = own["scatter"].dropna()
+                best = known.idxmin() if len(known) else NOTHING
+                rows.append([how, kind, str(part["n_grains"].iloc[0]), *cells, best])
+        parts.append(f"Drive `{drive}`:")
+        parts.append(markdown_table(["left out", "type", "grains", *PREDICTORS, "least"], rows))
+    return "\n\n".join(parts)
+
+
+def flattening_section(data):
+    """Whether omega_disr flattens with size."""
+    rows = []
+    for drive, table in data.tables.items():
+        for _, row in slopes(table).iterrows():
+            error = row["change_error"]
+            if not np.isfinite(row["change"]):
+                verdict = "sizes on one side only"
+            elif row["change"] > 2 * error:
+                verdict = "flatter above"
+            elif row["change"] < -2 * error:
+                verdict = "steeper above"
+            else:
+                verdict = "no change beyond two errors"
+            cells = [with_error(row[name], row[f"{name}_error"]) for name in ("below", "above", "change")]
+            sizes = f"{row['sizes_below']} and {row['sizes_above']}"
+            rows.append([drive, row["type"], *cells, verdict, sizes, str(row["n_grains"])])
+    head = ["drive", "type", "below 300 nm", "above", "change", "", "sizes below and above", "grains"]
+    return "\n\n".join(
+        [
+            "Local slope d ln omega_disr/d ln a_eff (300 nm counts on both sides; materials together, each with a "
+            "level of its own; ± from a bootstrap of grains within each material and size). A tensile strength that "
+            "depends on nothing but material gives -1; an asymptotic limit, as the paper finds above 300 nm, gives 0.",
+            markdown_table(head, rows),
+        ]
+    )
+
+
+def fragment_section(data):
+    """Sizes of the fragments."""
+    if not data.fragments:
+        return "The data hold no fragments."
+    parts = []
+    for drive, table in data.fragments.items():
+        largest = max((int(t["n_monomers"].max()) for t in data.tables.values()), default=1)
+        rows = []
+        for stage, text in STAGES.items():
+            shares = fragment_shares(table, stage)
+            for kind, part in shares.groupby("type", sort=False):
+                own = part.set_index("class")
+                cells = [
+                    with_error(own.loc[name, "mass_share"], own.loc[name, "mass_share_error"])
+                    for name in MONOMER_CLASSES
+                ]
+                single = own.loc[MONOMER_CLASSES[0], "number_share"]
+                chosen = table[table[stage] & (table["type"] == kind)]
+                rows.append([text, kind, f"{own['n_fragments'].iloc[0]} of {own['n_grains'].iloc[0]}", *cells,
+                             number(single), _law(chosen["fragment_n_monomers"], largest)])  # fmt: skip
+        head = ["stage", "type", "fragments of grains"]
+        head += [f"mass in fragments of {name}" for name in MONOMER_CLASSES]
+        parts += [f"Drive `{drive}`:", markdown_table([*head, "number of single monomers", "power law"], rows)]
+    return "\n\n".join(
+        [
+            "A fragment counts when it has left for good (it lies outside the sphere around the largest one and "
+            "recedes), once. Shares of the mass that left; ± from a bootstrap over grains. The last column holds the "
+            "exponent s of p(n) ~ n^-s, n being the number of monomers, only where made-up samples of that law lie as "
+            f"far from their own fit in at least {100 * JUSTIFIED:g} % of cases; otherwise the law is not justified "
+            "and no exponent is given.",
+            *parts,
+        ]
+    )
+
+
+def _law(sizes, largest):
+    found = power_law(sizes, largest)
+    if not np.isfinite(found["exponent"]):
+        return "too few fragments"
+    if found["probability"] < JUSTIFIED:
+        return f"not justified (p = {found['probability']:.2g})"
+    return f"s = {with_error(found['exponent'], found['error'])} (p = {found['probability']:.2g})"
+
+
+def shape_section(data):
+    """Oblate and prolate grains."""
+    rows = []
+    for drive, table in data.tables.items():
+        for _, row in oblate_counts(table, by=("material", "type")).iterrows():
+            cells = [drive, row["material"], row["type"]]
+            for when in ("start", "disr"):
+                k, n = row[f"{when}_oblate"], row[f"{when}_known"]
+                share = interval(k / n, row[f"{when}_low"], row[f"{when}_high"]) if n else NOTHING
+                cells += [f"{k} of {n}", share]
+            rows.append(cells)
+    head = ["drive", "material", "type", "oblate at rest", "share", "oblate at omega_disr", "share"]
+    return "\n\n".join(
+        [
+            "Oblate means b/a > c/b, for the ellipsoid with the moments of inertia of the relaxed grain and of the "
+            "largest fragment at omega_disr. Shares with Wilson's 95 % interval; all sizes together.",
+            markdown_table(head, rows),
+        ]
+    )

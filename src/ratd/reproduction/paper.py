@@ -1,0 +1,100 @@
+"""What is printed in Reissl et al. (2024), A&A 692, A60: every number that we compare with, and where it stands.
+
+Tables 1 and 2 stand in `ratd.composition`, Table 3 in `ratd.ensemble`, the error of Fig. 10 in `ratd.figures.figure10`.
+All values as printed, converted to SI units.
+"""
+
+from dataclasses import dataclass
+
+from ratd.composition import PRINTED_1, PRINTED_2
+from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3
+from ratd.figures.figure10 import PAPER_ERROR
+
+__all__ = ["GRAINS", "PAPER_MEAN_RADIUS", "PRINTED", "PRINTED_1", "PRINTED_2", "TABLE_3", "Printed"]
+
+
+@dataclass(frozen=True)
+class Printed:
+    """One printed value.
+
+    Parameters
+    ----------
+    place : str
+        Section, figure or table.
+    what : str
+        What it is the value of.
+    text : str
+        As printed (or said).
+    value : float or tuple of float or None
+        In SI units; a tuple is a range; None where the paper gives words only.
+    """
+
+    place: str
+    what: str
+    text: str
+    value: float | tuple | None = None
+
+
+GRAINS = {
+    # type, a_eff [nm]: N_mon, N_con, a_out [nm]
+    ("BA", 200): (160, 162, 543.1),
+    ("BA", 350): (521, 521, 882.6),
+    ("BA", 500): (1773, 1772, 1385.7),
+    ("BAM1", 200): (117, 235, 457.4),
+    ("BAM1", 350): (636, 1275, 901.2),
+    ("BAM1", 500): (1885, 3774, 1214.7),
+    ("BAM2", 200): (157, 475, 320.1),
+    ("BAM2", 350): (649, 1950, 603.3),
+    ("BAM2", 500): (1814, 5546, 845.2),
+}
+"""The nine grains of Fig. 1; which material they are of is not printed."""
+
+PRINTED = {
+    "ensemble": Printed("Sect. 3", "grains of the ensemble", "2970", 2970),
+    "mean_radius": Printed("Sect. 3", "average radius of the monomers", "20 nm", PAPER_MEAN_RADIUS),
+    "porosity_BA": Printed("Fig. 2, Sect. 8", "porosity, BA", "0.4–0.85", (0.4, 0.85)),
+    "porosity_BAM1": Printed("Fig. 2, Sect. 8", "porosity, BAM1", "0.35–0.7", (0.35, 0.7)),
+    "porosity_BAM2": Printed("Fig. 2, Sect. 8", "porosity, BAM2", "0.35–0.5", (0.35, 0.5)),
+    "porosity_BAM2_text": Printed("Sect. 7.3", "porosity, BAM2", "0.4–0.5", (0.4, 0.5)),
+    "porosity_slope": Printed("Sect. 3, Fig. 2", "change of the mean porosity with size", "stagnates for larger sizes"),
+    "fractal_BA": Printed("Sect. 7.3", "fractal dimension, BA", "about 2.0", 2.0),
+    "step": Printed("Sect. 6", "time step 0.02 min(t_dis), monomers of 10 nm", "“only a few ns”", (1e-9, 5e-9)),
+    "terminal": Printed("Sect. 7", "grains not disrupted below omega_RAT = 3e10 rad/s", "none", 0),
+    "onset": Printed("Sect. 7.1, Fig. 4", "mass constant up to [rad/s]", "3e8", 3e8),
+    "decade": Printed("Sect. 7.1, Fig. 4", "width of the loss of mass, end over onset", "roughly a factor of 10", 10.0),
+    "gain": Printed(
+        "Sect. 7.1, Fig. 4", "greatest number of contacts over its start, BAM2", "exceeds the start for a while"
+    ),
+    "quarter": Printed(
+        "Sect. 7.1, Sect. 8", "omega at 25 % mass loss over omega_disr", "“close to but not identical”", 1.0
+    ),
+    "whole_01": Printed(
+        "Sect. 7.2, Fig. 5", "mass of the largest fragment at 0.1 omega_disr", "all monomers connected", 1.0
+    ),
+    "whole_08": Printed("Sect. 7.2, Fig. 5", "the same at 0.8 omega_disr", "small fragments have left"),
+    "whole_10": Printed("Sect. 7.2, Fig. 5", "the same at omega_disr", "larger fragments have left"),
+    "blocks": Printed(
+        "Sect. 7.2", "mass share of single monomers in what leaves, BAM", "“almost completely” single monomers", 1.0
+    ),
+    "oblate_start_200": Printed("Sect. 7.3, Fig. 6", "oblate at rest, 200 nm", "about half", 0.5),
+    "oblate_start_350": Printed("Sect. 7.3, Fig. 6", "oblate at rest, 350 nm", "slightly below half"),
+    "oblate_start_500": Printed("Sect. 7.3, Fig. 6", "oblate at rest, 500 nm", "slightly below half"),
+    "c_over_b": Printed("Sect. 7.3, Fig. 6", "grains with c/b < 1.7 at rest, 350 and 500 nm", "most"),
+    "oblate_disr": Printed("Sect. 7.3, Fig. 6", "oblate at omega_disr, BAM1 and BAM2", "most"),
+    "oblate_disr_BA": Printed("Sect. 7.3, Fig. 6", "oblate at omega_disr, BA 200 nm", "prolate preferred"),
+    "b_over_a": Printed("Sect. 7.3, Fig. 6", "greatest b/a at omega_disr, BAM", "up to 5.0", 5.0),
+    "porosity_change_BA": Printed("Sect. 7.3", "porosity at omega_disr less that at rest, BA", "no increase", 0.0),
+    "porosity_change_BAM": Printed("Sect. 7.3", "the same, BAM1 and BAM2", "slight increase"),
+    "range": Printed("Sect. 7.4, Fig. 7", "omega_disr, all grains [rad/s]", "5e8–5e9", (5e8, 5e9)),
+    "order": Printed("Abstract", "order of magnitude of omega_disr [rad/s]", "1e8–1e9", (1e8, 1e9)),
+    "flattening": Printed(
+        "Abstract, Sect. 8", "d ln omega_disr/d ln a_eff above 300 nm", "0 (“asymptotic limit”)", 0.0
+    ),
+    "withstand": Printed(
+        "Abstract", "omega_disr over the strength models, greatest size, co-S BAM2", "up to a factor of 10", 10.0
+    ),
+    "rolling": Printed("Sect. 7.5, Fig. 9", "trend of omega_disr with xi_c from 0.2 to 6.4 nm", "none", 1.0),
+    "viscous": Printed("Sect. 7.5, Fig. 9", "omega_disr at T_vis = 9 ps over that at 5 ps, a-C BAM2", "1.11", 1.11),
+    "pairs": Printed("App. A, Fig. 10", "greatest error against Eq. 35", f"{100 * PAPER_ERROR:g} %", PAPER_ERROR),
+}
+"""Key -> what is printed, in the order of the paper."""

@@ -1,0 +1,149 @@
+"""Beyond the paper: made-up grains and fragments with known answers."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ratd.beyond import (
+    MONOMER_CLASSES,
+    binomial_interval,
+    cross_validation,
+    fragment_shares,
+    oblate_counts,
+    power_law,
+    slopes,
+)
+from ratd.errors import InputError
+from synthetic_runs import make_table
+
+SIZES = tuple(50e-9 * k for k in range(1, 9))
+
+
+@pytest.fixture(scope="module")
+def table():
+    return make_table(sizes=SIZES, seeds=6, scatter=0.1)
+
+
+def scatter_of(found, kind, predictor):
+    return found[(found["type"] == kind) & (found["predictor"] == predictor)].iloc[0]
+
+
+@pytest.mark.parametrize("by", ["size", "fold"])
+def test_the_law_that_made_the_grains_predicts_them_to_their_scatter(table, by):
+    # the mean radius of the made-up grains scatters by 8 %, which Eq. 33 with 20 nm cannot know
+    expected = np.hypot(0.1, 0.5 * 0.08)
+    found = scatter_of(cross_validation(table, by=by), "all", "Eq. 33")
+    assert found["scatter"] == pytest.approx(expected, rel=0.1)
+    assert abs(found["scatter"] - expected) < 4 * found["error"] and found["error"] < 0.01
+
+
+def test_a_bound_that_differs_by_type_predicts_with_one_constant_a_type():
+    table = make_table(sizes=SIZES, seeds=6)
+    factor = table["type"].map({"BA": 1.0, "BAM1": 2.0, "BAM2": 4.0})
+    table["cut_bound"] = table["omega_disr"] / factor
+    found = cross_validation(table)
+    assert scatter_of(found, "all", "cut bound by type")["scatter"] == pytest.approx(0.0, abs=1e-12)
+    # one constant for ln 1, ln 2, ln 4: the geometric mean, off by ln 2 for the outer two types
+    assert scatter_of(found, "BAM2", "cut bound")["bias"] == pytest.approx(np.log(2), rel=1e-9)
+    assert scatter_of(found, "all", "cut bound")["scatter"] == pytest.approx(np.log(2) * np.sqrt(2 / 3), rel=1e-9)
+
+
+def test_what_was_left_out_has_no_part_in_its_prediction():
+    """One of eight sizes lies a factor of 10 off: seen from the others it is off by all of that."""
+    table = make_table(materials=["q-S"], types=["BAM2"], sizes=SIZES, seeds=6)
+    table["cut_bound"] = table["omega_disr"]
+    table.loc[np.isclose(table["a_eff"], SIZES[-1]), "omega_disr"] *= 10
+    found = scatter_of(cross_validation(table), "BAM2", "cut bound")
+    assert found["scatter"] == pytest.approx(np.log(10) * np.sqrt(1 / 8 + 7 / 8 / 7**2), rel=1e-9)
+
+
+def test_a_grain_that_one_predictor_cannot_predict_counts_for_none(table):
+    lone = table[(table["material"] == "q-S") & (table["type"] == "BA")].iloc[:1].assign(material="a-C", a_eff=1e-6)
+    here = pd.concat([table[table["material"] == "q-S"], lone], ignore_index=True)
+    assert scatter_of(cross_validation(here), "all", "cut bound")["n_grains"] == len(here) - 1
+    with pytest.raises(InputError, match="by is 'seed'"):
+        cross_validation(table, by="seed")
+
+
+def power_table(below, above, noise=0.05, split=300e-9):
+    rng = np.random.default_rng(3)
+    rows = []
+    for level, material in enumerate(("a-C", "q-S")):
+        for a in 50e-9 * np.arange(1, 12):
+            for seed in range(8):
+                slope = below if a <= split else above
+                omega = 1e8 * (1 + level) * (a / split) ** slope * rng.lognormal(0, noise)
+                rows.append({"material": material, "type": "BA", "a_eff": a, "seed": seed, "omega_disr": omega})
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize(("below", "above"), [(-1.0, 0.0), (-1.2, -1.2)])
+def test_slopes_on_both_sides_are_found(below, above):
+    row = slopes(power_table(below, above)).iloc[0]
+    assert abs(row["below"] - below) < 4 * row["below_error"] < 0.1
+    assert abs(row["above"] - above) < 4 * row["above_error"] < 0.2
+    assert row["change"] == pytest.approx(row["above"] - row["below"], abs=1e-12)
+    assert (row["sizes_below"], row["sizes_above"], row["n_grains"]) == (6, 6, 176)
+
+
+def test_bootstrap_errors_of_slopes_are_the_scatter_between_ensembles():
+    made = []
+    for seed in range(40):
+        rows = power_table(-1.0, 0.0, noise=0.0)
+        rows["omega_disr"] *= np.random.default_rng(seed).lognormal(0, 0.1, len(rows))
+        made.append(rows)
+    found = np.std([slopes(rows)["change"].iloc[0] for rows in made[:12]], ddof=1)
+    assert slopes(made[0])["change_error"].iloc[0] == pytest.approx(found, rel=0.6)
+
+
+def test_one_side_without_sizes_has_no_slope():
+    row = slopes(power_table(-1.0, 0.0), split=550e-9).iloc[0]
+    assert np.isfinite(row["below"]) and np.isnan(row["above"]) and np.isnan(row["change_error"])
+
+
+def test_binomial_intervals_of_wilson():
+    assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
+    assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
+    assert binomial_interval(10, 10)[1] == 1.0
+    assert np.isnan(binomial_interval(0, 0)).all()
+
+
+def test_oblate_grains_are_counted_at_both_times():
+    axes = {"axis_a_start": [1, 1, 1], "axis_b_start": [2.0, 1.1, 1.5], "axis_c_start": [2.1, 2.0, np.nan]}
+    axes |= {"axis_a_disr": [1, 1, 1], "axis_b_disr": [2.0, 3.0, 2.0], "axis_c_disr": [2.1, 3.1, 2.2]}
+    row = oblate_counts(pd.DataFrame({"type": "BA", **axes})).iloc[0]
+    assert (row["start_oblate"], row["start_known"]) == (1, 2)
+    assert (row["disr_oblate"], row["disr_known"]) == (3, 3) and row["disr_low"] < 1
+
+
+def test_shares_of_fragments():
+    fragments = pd.DataFrame(
+        {
+            "type": "BAM2",
+            "grain": [0, 0, 0, 1, 1],
+            "fragment_n_monomers": [1, 3, 20, 1, 4],
+            "mass_fraction": [0.1, 0.1, 0.3, 0.25, 0.25],
+            "half": [True, True, True, True, True],
+            "disruption": [True, False, False, False, False],
+        }
+    )
+    own = fragment_shares(fragments, "half").set_index("class")
+    assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.35, 0.1, 0.25, 0.3])
+    assert own["number_share"].tolist() == pytest.approx([0.4, 0.2, 0.2, 0.2])
+    assert (own["n_fragments"].iloc[0], own["n_grains"].iloc[0]) == (5, 2)
+    assert fragment_shares(fragments, "disruption")["mass_share"].tolist() == [1, 0, 0, 0]
+
+
+@pytest.mark.parametrize("exponent", [1.5, 2.5])
+def test_power_law_is_found_and_justified_where_it_made_the_sample(exponent):
+    n = np.arange(1, 501)
+    law = n**-exponent / np.sum(n**-exponent)
+    found = power_law(np.random.default_rng(5).choice(n, size=2000, p=law), 500)
+    assert abs(found["exponent"] - exponent) < 4 * found["error"] < 0.2
+    assert found["probability"] > 0.05
+
+
+def test_power_law_is_not_justified_for_another_distribution():
+    sizes = np.random.default_rng(6).poisson(20, size=500) + 1
+    assert power_law(sizes, 500)["probability"] == 0.0
+    assert np.isnan(power_law([1, 2, 3], 10)["exponent"])

@@ -1,0 +1,215 @@
+"""The reproduction document: printed values, bounds, rows, and the whole text from a folder of made-up data."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from files import make_run, runs_file
+from ratd import io
+from ratd.bound import midplane_bound
+from ratd.config import load
+from ratd.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.figures import save
+from ratd.fragmentation import FRAGMENT_COLUMNS
+from ratd.growth import grow
+from ratd.materials import MATERIALS
+from ratd.reproduction import figures
+from ratd.reproduction.bounds import ratios
+from ratd.reproduction.collect import Collection
+from ratd.reproduction.data import Data
+from ratd.reproduction.paper import GRAINS, PRINTED
+from ratd.reproduction.report import report
+from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
+from synthetic_runs import make_table
+
+ROOT = Path(__file__).parents[1]
+SIZES = (200e-9, 300e-9, 350e-9, 500e-9)
+FACTOR = {"prescribed": 0.1, "literal": 1.0}
+"""omega of the made-up grains over Eq. 33 with A = 2.2, alpha = 0.14."""
+
+
+def ensemble(drive, types=("BA", "BAM1", "BAM2")):
+    """Table of made-up grains with all columns of the pipeline's."""
+    table = make_table(types=types, sizes=SIZES, seeds=3, A=2.2 * FACTOR[drive], alpha=0.14, drive=drive)
+    table["omega_first_loss"], table["omega_end"] = 0.5 * table["omega_disr"], 20 * table["omega_disr"]
+    table["end_reason"] = "one contact left"
+    table["n_contacts_max"] = table["n_contacts"]
+    table["porosity_start"], table["porosity_disr"] = table["porosity"], table["porosity"] + 0.01
+    return grain_table(grains=table, marks=table)
+
+
+@pytest.fixture(scope="module", params=["both", "prescribed alone"])
+def folder(request, tmp_path_factory):
+    """A folder of data with one drive or two, without studies of the validation."""
+    path = tmp_path_factory.mktemp("data")
+    drives = ["prescribed", "literal"] if request.param == "both" else ["prescribed"]
+    config = load(ROOT / "config" / "config.yaml", schemas=ROOT / "config" / "schema").config | {"drives": drives}
+    config["materials_file"] = str(ROOT / "config" / "materials.yaml")
+    (path / "config.yaml").write_text(yaml.safe_dump(config))
+    for drive in drives:
+        table = ensemble(drive)
+        io.write(path / f"ensemble/{drive}/grains.nc", table_dataset(table, "grain"), "table")
+        fit = table3_dataset(fit_ensemble(table, n_bootstrap=50))
+        io.write(path / f"ensemble/{drive}/table3.nc", fit, "fit")
+    return path
+
+
+@pytest.fixture(scope="module")
+def text(folder):
+    return report(Data(str(folder)), "reproduction")
+
+
+@pytest.fixture(autouse=True)
+def in_root(monkeypatch):
+    monkeypatch.chdir(ROOT)
+
+
+def test_every_printed_value_is_used_once_in_the_document(text):
+    table = text.split("## The printed numbers")[1].split("## Figures and tables")[0]
+    cells = [line.split(" | ")[:3] for line in table.splitlines() if line.startswith("| ") and "---" not in line]
+    found = [tuple(cell.strip("| ") for cell in row) for row in cells][1:]
+    assert sorted(found) == sorted((p.place, p.what, p.text) for p in PRINTED.values())
+
+
+def test_the_same_data_give_the_same_bytes(folder, text):
+    assert report(Data(str(folder)), "reproduction") == text and "nan" not in text
+
+
+def test_figures_give_the_same_bytes(folder, tmp_path):
+    for k in range(2):
+        save(figures.bound(Data(str(folder)).tables), tmp_path / f"{k}.png")
+    assert (tmp_path / "0.png").read_bytes() == (tmp_path / "1.png").read_bytes()
+
+
+def test_ratios_are_those_of_the_functions_for_one_grain():
+    grain = grow("BAM2", 120e-9, "q-S", seed=3)
+    table = grain_table([grain])
+    table["cut_bound"], table["omega_disr"] = 2.0e7, 3.0e7
+    row = ratios(table).iloc[0]
+    material = grain.material
+    printed = eq33(
+        120e-9,
+        material.surface_energy,
+        material.density,
+        20e-9,
+        grain.n_contacts,
+        grain.shape.filling_factor,
+        *TABLE_3["q-S", "BAM2"],
+    )
+    assert row["printed_over_bound"] == pytest.approx(printed / 2.0e7, rel=1e-12)
+    assert row["strength_over_bound"] == pytest.approx(midplane_bound(grain) / 2.0e7, rel=1e-9)
+    assert row["found_over_bound"] == 1.5
+    assert row["printed_over_found"] == pytest.approx(printed / 3.0e7, rel=1e-12)
+
+
+def test_materials_that_the_paper_does_not_have_get_no_printed_value():
+    table = make_table(materials=["q-S"], sizes=[1e-7], seeds=1).assign(material="ice")
+    assert ratios(table, {"ice": MATERIALS["q-S"]})["printed_over_bound"].isna().all()
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.1234, "0.123"), (4.5e8, "4.50e8"), (1234.5, "1234"), (-2e-5, "-2.00e-5"), (np.nan, "–")]
+)
+def test_numbers_as_text(value, text):
+    assert number(value) == text
+
+
+def test_values_with_errors_and_ranges_as_text():
+    assert with_error(1.5, 0.02) == "1.500 ± 0.020"
+    assert with_error(3.25e8, 1.2e7) == "(3.25 ± 0.12)e8"
+    assert with_error(0.95, 1e-17) == "0.95" and with_error(2e9, np.nan) == "2.00e9" and with_error(np.nan, 1) == "–"
+    assert between(0.4, 5e8) == "0.4–5.00e8"
+    assert over(3.0, 6.0) == "0.5" and over((1.0, 4.0), (2.0, 2.0)) == "0.5 / 2" and over(1.0, 0.0) == "–"
+
+
+def test_rows_stand_in_the_order_of_the_paper_with_what_is_missing_named():
+    rows = [Row("pairs", {"prescribed": Answer("1 %", "0.5")}, "because")]
+    rows.append(Row("mean_radius", {"": Answer("30 nm", "1.5")}))
+    lines = row_table(rows, ["prescribed", "literal"]).splitlines()[2:]
+    first, second = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    assert first[2:] == ["20 nm", "30 nm", "1.5", "(same)", "–", ""]
+    assert second[3:] == ["1 %", "0.5", "no data", "–", "because"]
+
+
+def test_fig_1_is_as_printed():
+    assert GRAINS["BAM2", 500] == (1814, 5546, 845.2) and len(GRAINS) == 9
+    assert all(contacts >= monomers - 1 for monomers, contacts, _ in GRAINS.values())
+
+
+def test_means_of_the_document_are_those_of_the_table(folder, text):
+    data = Data(str(folder))
+    for drive, table in data.tables.items():
+        found = (1 / ratios(table)["printed_over_found"]).median()
+        line = next(line for line in text.splitlines() if line.startswith(f"- **omega_disr, drive `{drive}`"))
+        assert float(line.split("**: ")[1].split(" ")[0]) == pytest.approx(found, rel=2e-3)
+
+
+def test_sections_without_data_say_so(text):
+    for words in ("check against LAMMPS are not", "literal drive are not", "hold no fragments", "T_vis is not"):
+        assert words in text
+    assert len([line for line in text.splitlines() if line.startswith("#")]) > 20
+
+
+def collected(folder, path, figure5_seed=1):
+    """A collection from a file of made-up runs."""
+    config = load(ROOT / "config" / "config.yaml").config
+    cell = {"material": "q-S", "type": "BA", "size_nm": make_run(0).attrs["a_eff"] * 1e9}
+    config["figures"] = config["figures"] | {"figure4": cell, "figure5": cell | {"seed": figure5_seed}}
+    provenance = {"code_hash": "0123", "versions": "ratd 0"}
+    collection = Collection(folder, config, provenance)
+    collection.runs([path], "prescribed")
+    collection.finish("make it")
+    return collection
+
+
+def test_collection_holds_fragments_records_and_pictures(tmp_path):
+    made = runs_file(tmp_path / "runs.nc")
+    for k, run in enumerate(made):
+        run.attrs["a_eff"] = make_run(0).attrs["a_eff"]
+        made[k] = io.run_row(run)
+    io.write(tmp_path / "runs.nc", io.block(made, "spinup", MATERIALS["q-S"], {"code_hash": "0123"}), "spinup")
+    folder = tmp_path / "data"
+    collected(folder, tmp_path / "runs.nc")
+    fragments = io.read(folder / "fragments/prescribed.nc", "fragments")
+    assert fragments["seed"].values.tolist() == [0, 1, 2] and set(FRAGMENT_COLUMNS) < set(fragments.variables)
+    course = io.read_runs(folder / "figure4/prescribed.nc")
+    assert [run.attrs["seed"] for run in course] == [0, 1, 2] and not any("snapshot" in run.sizes for run in course)
+    np.testing.assert_array_equal(course[1]["total_stress"].values, made[1]["total_stress"].values)
+    shown = io.read_runs(folder / "figure5/prescribed.nc")[0]
+    assert shown.attrs["seed"] == 1 and 0 < shown.sizes["snapshot"] <= 2
+    readme = (folder / "README.md").read_text()
+    assert "make it" in readme and "`fragments/prescribed.nc`" in readme and str(tmp_path) not in readme
+
+
+def test_collecting_again_gives_the_same_bytes_and_leaves_nothing_old(tmp_path):
+    runs_file(tmp_path / "runs.nc")
+    folder = tmp_path / "data"
+    collected(folder, tmp_path / "runs.nc")
+    first = {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    (folder / "ensemble").mkdir()
+    (folder / "ensemble" / "old.nc").write_text("old")
+    collected(folder, tmp_path / "runs.nc")
+    assert {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == first
+
+
+def test_a_folder_without_config_has_nothing_to_draw(tmp_path):
+    data = Data(str(tmp_path))
+    assert data.files == data.drives == data.figures == data.further_figures == []
+
+
+def test_figures_are_drawn_from_what_is_there(folder):
+    data = Data(str(folder))
+    assert {f"figure7_{drive}" for drive in data.drives} < set(data.figures)
+    assert not [name for name in data.figures if name.startswith(("figure4", "figure10"))]
+
+
+def test_fragments_are_drawn_for_each_drive_and_stage():
+    table = pd.DataFrame({"type": "BA", "mass_fraction": [0.1, 0.4], "disruption": [True, False], "half": True})
+    drawn = figures.fragments({"prescribed": table, "literal": table})
+    assert len(drawn.axes) == 4
+    mass, count = (line.get_ydata()[-1] for line in drawn.axes[0].lines)
+    assert (mass, count) == (1.0, 1.0)
+    assert drawn.axes[2].lines[0].get_ydata().tolist() == pytest.approx([0.2, 1.0])

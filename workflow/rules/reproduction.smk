@@ -1,0 +1,158 @@
+# The reproduction document: its data, collected from the results of the config in use, and what is drawn from them.
+#
+# `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
+from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES, FOLDER, Data
+
+DATA = Data()
+DOCS = str(Path(FOLDER).parent)
+
+
+rule reproduction_data:
+    input:
+        ensemble=expand(
+            "<results>/ensemble/{drive}/{name}.nc",
+            drive=PLAN.config["drives"],
+            name=["grains", "table3"],
+        ),
+        runs=rules.spinups.input,
+        grains=rules.figure1.input,
+        pairs=[
+            f"<results>/pairs/{material}.nc"
+            for material in PLAN.config["materials"]
+            if 10 in PLAN.common_figures
+        ],
+    output:
+        # the other files of the folder are left out here: they would have a rule behind them
+        f"{FOLDER}/README.md",
+    log:
+        "<results>/logs/reproduction_data.log",
+    benchmark:
+        "<results>/benchmarks/reproduction_data.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=4000,
+        runtime=60,
+    params:
+        code=CODE["reproduction_data"],
+        # what there is of the validation, which is not computed for this
+        settings=lambda w: {
+            "config": PLAN.config,
+            "validation": CHECKS.existing(CHECKS.docs, ["lammps", "literal"]),
+            "command": "snakemake --cores 2 reproduction_data --configfile CONFIG",
+        },
+    message:
+        "Collect the data of docs/reproduction.md"
+    script:
+        "../scripts/reproduction_data.py"
+
+
+rule redraw_figure:
+    input:
+        unpack(lambda w: DATA.figure_files(int(w.number), w.drive)),
+    output:
+        f"{DOCS}/figure{{number}}_{{drive}}.png",
+    log:
+        "<results>/logs/redraw/figure{number}_{drive}.log",
+    benchmark:
+        "<results>/benchmarks/redraw/figure{number}_{drive}.tsv"
+    wildcard_constraints:
+        number=r"\d+",
+        drive="|".join(DATA.drives) or "none",
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=lambda w: CODE[f"figure{w.number}"],
+        script=lambda w: f"figure{w.number}",
+        settings=lambda w: DATA.plan.figure(int(w.number), w.drive),
+    message:
+        "Redraw figure {wildcards.number} ({wildcards.drive})"
+    script:
+        "../scripts/figure{wildcards.number}.py"
+
+
+rule redraw_common_figure:
+    input:
+        unpack(lambda w: DATA.figure_files(int(w.number))),
+    output:
+        f"{DOCS}/figure{{number}}.png",
+    log:
+        "<results>/logs/redraw/figure{number}.log",
+    benchmark:
+        "<results>/benchmarks/redraw/figure{number}.tsv"
+    wildcard_constraints:
+        number=r"\d+",
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=lambda w: CODE[f"figure{w.number}"],
+        script=lambda w: f"figure{w.number}",
+        settings=lambda w: DATA.plan.figure(int(w.number)),
+    message:
+        "Redraw figure {wildcards.number}"
+    script:
+        "../scripts/figure{wildcards.number}.py"
+
+
+# What the paper does not have: the bound beside Table 3, fragments, checks of the validation.
+rule redraw_argument:
+    input:
+        DATA.files,
+    output:
+        expand(f"{DOCS}/{{name}}.png", name=DATA.further_figures),
+    log:
+        "<results>/logs/redraw/argument.log",
+    benchmark:
+        "<results>/benchmarks/redraw/argument.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=CODE["redraw_argument"],
+        settings={"folder": FOLDER},
+    message:
+        "Draw the further figures of docs/reproduction.md"
+    script:
+        "../scripts/redraw_argument.py"
+
+
+rule redraw:
+    input:
+        data=DATA.files or [DATA.path("config.yaml")],
+        figures=expand(f"{DOCS}/{{name}}.png", name=DATA.figures),
+        further=rules.redraw_argument.output,
+        captions=expand(
+            "workflow/report/figure{number}.rst",
+            number=[*COMMON_FIGURES, *DRIVEN_FIGURES],
+        ),
+    output:
+        "docs/reproduction.md",
+    log:
+        "<results>/logs/redraw/reproduction.log",
+    benchmark:
+        "<results>/benchmarks/redraw/reproduction.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=CODE["redraw"],
+        settings={"folder": FOLDER, "pictures": Path(DOCS).name},
+    message:
+        "Write docs/reproduction.md"
+    script:
+        "../scripts/redraw.py"
