@@ -1,7 +1,7 @@
 # The reproduction document: its data, collected from the results of the config in use, and what is drawn from them.
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
-from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES, FOLDER, Data
+from ratd.reproduction.data import CALIBRATION, FOLDER, PARAMETERS, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -36,9 +36,19 @@ rule reproduction_data:
         runtime=60,
     params:
         code=CODE["reproduction_data"],
-        # what there is of the validation, which is not computed for this
+        # what there is of studies and validation, which are not computed for this
         settings=lambda w: {
             "config": PLAN.config,
+            "studies": [
+                path
+                for path in (
+                    f"{PLAN.results}/{CALIBRATION}",
+                    *expand(
+                        f"{PLAN.results}/{PARAMETERS}", drive=PLAN.config["drives"]
+                    ),
+                )
+                if Path(path).is_file()
+            ],
             "validation": CHECKS.existing(CHECKS.docs, ["lammps", "literal"]),
             "command": "snakemake --cores 2 reproduction_data --configfile CONFIG",
         },
@@ -133,9 +143,8 @@ rule redraw:
         data=DATA.files or [DATA.path("config.yaml")],
         figures=expand(f"{DOCS}/{{name}}.png", name=DATA.figures),
         further=rules.redraw_argument.output,
-        captions=expand(
-            "workflow/report/figure{number}.rst",
-            number=[*COMMON_FIGURES, *DRIVEN_FIGURES],
+        captions=sorted(
+            {f"workflow/report/{name.partition('_')[0]}.rst" for name in DATA.figures}
         ),
     output:
         "docs/reproduction.md",

@@ -3,9 +3,10 @@
 import numpy as np
 
 from ratd.beyond import SPLIT
+from ratd.figures.style import plural
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
-from ratd.reproduction.text import NOTHING, number, with_error
+from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.units import NM
 from ratd.validation.show import lammps, literal
 from ratd.validation.statistics import median_of
@@ -93,6 +94,60 @@ def lammps_section(data):
 
 def _whole_nm(table):
     return np.rint(table["a_eff"] / NM).astype(int)
+
+
+def calibration_section(data):
+    """The rate of the literal drive that gives the onset of Fig. 4, and what the literal ensemble has in common."""
+    parts = []
+    found = data.calibration
+    if found is None:
+        parts.append("The calibration of d omega/dt on the onset of mass loss in Fig. 4 is not part of the data.")
+    else:
+        value = {name: found[name].item() for name in ("omega_onset", "calibrated", "exponent", "exponent_error")}
+        low, high = found["calibrated_low"].item(), found["calibrated_high"].item()
+        parts.append(
+            "The literal drive has one number that the paper does not give, d omega/dt (the step is printed). The "
+            f"onset of mass loss in Fig. 4, {number(value['omega_onset'])} rad/s, fixes it: "
+            f"{number(value['calibrated'])} rad/s² ({between(low, high)} for one standard error), from a fit of "
+            f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
+            f"{plural(int(found.sizes['entry']), 'run')}. This is the one place where anything was fitted to the paper."
+        )
+    if "literal" in data.tables:
+        law = data.plan.spin_up_of("literal")
+        table = ratios(data.tables["literal"], data.plan.materials)
+        parts.append(
+            f"The grains of the drive `literal` here were spun up with {_rate(law)} and f = "
+            f"{law['timestep_factor']:g}. The table sets them beside Eq. 33 with Table 3 for the same grains: level "
+            "(median of the ratio), and how the types are ordered at the sizes that all of them have, from the lowest "
+            "omega to the highest."
+        )
+        rows = []
+        for name, part in table.groupby("material", sort=False):
+            levels = [
+                f"{kind} {_range(1 / own['printed_over_found'])}" for kind, own in part.groupby("type", sort=False)
+            ]
+            printed = part.assign(printed=part["printed_over_found"] * part["omega_disr"])
+            rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
+        parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
+    return "\n\n".join(parts)
+
+
+def _rate(law):
+    """The spin-up law of a drive, text."""
+    if law["epsilon"] is not None:
+        return f"epsilon = {law['epsilon']:g}"
+    return f"d omega/dt = {number(law['angular_acceleration'])} rad/s²"
+
+
+def _order(table, column):
+    """Types from the lowest to the highest median at the sizes that all types have, text."""
+    table = table.assign(nm=_whole_nm(table))
+    counts = table.groupby("nm")["type"].nunique()
+    common = counts.index[counts == table["type"].nunique()]
+    if not len(common) or table["type"].nunique() < 2:
+        return NOTHING
+    medians = table[table["nm"].isin(common)].groupby("type")[column].median().dropna().sort_values()
+    return " < ".join(medians.index)
 
 
 def literal_section(data):

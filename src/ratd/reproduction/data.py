@@ -15,6 +15,8 @@ from ratd.fragmentation import fragment_table
 
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
+PARAMETERS = "parameters/{drive}.nc"
+CALIBRATION = "calibration/fit.nc"
 STUDIES = ("lammps", "literal")
 """Checks of the validation that the document takes numbers from."""
 DRIVEN_FIGURES = {
@@ -24,6 +26,7 @@ DRIVEN_FIGURES = {
     6: {"table": "ensemble/{drive}/grains.nc"},
     7: {"table": "ensemble/{drive}/grains.nc", "fit": "ensemble/{drive}/table3.nc"},
     8: {"table": "ensemble/{drive}/grains.nc"},
+    9: {"table": PARAMETERS},
 }
 """Number of a figure that has a drive -> the data that it is drawn from, below the folder."""
 COMMON_FIGURES = {1: "figure1/*.nc", 10: "pairs/*.nc"}
@@ -139,6 +142,16 @@ class Data:
         return (
             pd.concat([io.read(path, "pairs").to_dataframe() for path in paths], ignore_index=True) if paths else None
         )
+
+    @cached_property
+    def parameters(self):
+        """Drive -> table of the study of xi_c and T_vis (Fig. 9)."""
+        return self._each_drive(PARAMETERS, lambda path: io.read(path, "parameters").to_dataframe())
+
+    @cached_property
+    def calibration(self):
+        """Calibration of the drive literal, a Dataset, or None."""
+        return io.read(self.path(CALIBRATION), "calibration") if self.has(CALIBRATION) else None
 
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""

@@ -34,7 +34,7 @@ BAM = ("BAM1", "BAM2")
 
 def rows(data):
     """Rows that need spin-ups, list of Row in the order of the paper."""
-    return [_terminal(data), *_course(data), *_shapes(data), *_omega(data), *_studies(), *_pairs(data)]
+    return [_terminal(data), *_course(data), *_shapes(data), *_omega(data), *_parameters(data), *_pairs(data)]
 
 
 def _terminal(data):
@@ -219,9 +219,21 @@ def _over_strengths(data, table, printed):
     return Answer(text, over(ratio.max(), printed.value))
 
 
-def _studies():
-    """Rows of Fig. 9, whose study is not part of the data yet."""
-    return [Row("rolling"), Row("viscous")]
+def _parameters(data):
+    """Rows of Fig. 9: each grain over itself with the paper's xi_c and T_vis."""
+
+    def last(column, kinds):
+        def evaluate(table, printed):
+            here = table[table["type"].isin(kinds) & table["omega_disr_ratio"].notna()]
+            here = here[np.isclose(here[column], table[column].max())]
+            return _median(here["omega_disr_ratio"], printed)
+
+        return evaluate
+
+    return [
+        drive_rows("rolling", data.parameters, last("critical_rolling_displacement", ("BA", "BAM2"))),
+        drive_rows("viscous", data.parameters, last("viscous_time", ("BAM2",))),
+    ]
 
 
 def _pairs(data):

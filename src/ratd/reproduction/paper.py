@@ -93,7 +93,7 @@ PRINTED = {
     "withstand": Printed(
         "Abstract", "omega_disr over the strength models, greatest size, co-S BAM2", "up to a factor of 10", 10.0
     ),
-    "rolling": Printed("Sect. 7.5, Fig. 9", "trend of omega_disr with xi_c from 0.2 to 6.4 nm", "none", 1.0),
+    "rolling": Printed("Sect. 7.5, Fig. 9", "omega_disr at xi_c = 6.4 nm over that at 0.2 nm, a-C", "no trend", 1.0),
     "viscous": Printed("Sect. 7.5, Fig. 9", "omega_disr at T_vis = 9 ps over that at 5 ps, a-C BAM2", "1.11", 1.11),
     "pairs": Printed("App. A, Fig. 10", "greatest error against Eq. 35", f"{100 * PAPER_ERROR:g} %", PAPER_ERROR),
 }

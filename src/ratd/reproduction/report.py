@@ -148,8 +148,6 @@ def _figures(data, pictures, captions):
     for number_ in sorted({*COMMON_FIGURES, *DRIVEN_FIGURES}):
         if number_ == 8:
             parts += ["### Table 3: A and alpha of Eq. 33", _table3(data)]
-        if number_ == 10:
-            parts += ["### Fig. 9", "The study of xi_c and T_vis is not part of the data."]
         parts.append(f"### Fig. {number_}")
         names = [f"figure{number_}_{drive}" for drive in data.drives] if number_ in DRIVEN_FIGURES else []
         names = [name for name in [f"figure{number_}", *names] if name in there]
@@ -230,7 +228,7 @@ def _argument(data, pictures):
         argument.literal_section(data),
         *picture("literal"),
         "### One free number of the literal drive",
-        "The calibration of d omega/dt on the onset of mass loss in Fig. 4 is not part of the data.",
+        argument.calibration_section(data),
         "### Each printed formula alone",
         "The study of the printed formulae, one at a time, is not part of the data.",
     ]
