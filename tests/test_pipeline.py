@@ -285,6 +285,27 @@ def test_damaged_input_ends_its_job_with_a_name_and_touches_nothing_else(copy_of
     assert after == {name: content for name, content in before.items() if name != RUNS}
 
 
+def test_the_document_is_redrawn_from_its_data_alone_with_the_same_bytes(copy_of):
+    done = copy_of.run("redraw")
+    assert done.returncode != 0 and "docs/reproduction/data/config.yaml" in done.stdout
+    done = copy_of.run("reproduction_data")
+    assert done.returncode == 0, done.stdout
+    shutil.rmtree(copy_of.folder / "results")
+    drawn = []
+    for _ in range(2):
+        done = copy_of.run("--forcerun", "redraw_figure", "redraw", "--", "redraw")
+        assert done.returncode == 0, done.stdout
+        paths = [path for path in (copy_of.folder / "docs").rglob("*.*") if path.suffix in (".md", ".png")]
+        drawn.append({path.name: path.read_bytes() for path in paths})
+    assert drawn[0] == drawn[1]
+    assert {"reproduction.md", "bound.png", "fragments.png", "figure1.png", "figure5_prescribed.png"} < set(drawn[0])
+    assert not {"grains", "spinup", "ensemble"} & {path.name for path in (copy_of.folder / "results").iterdir()}
+    text = drawn[0]["reproduction.md"].decode()
+    shown = {f"reproduction/{name}" for name in re.findall(r"\(reproduction/(\w+\.png)\)", text)}
+    pictures = (copy_of.folder / "docs" / "reproduction").glob("*.png")
+    assert shown == {f"reproduction/{path.name}" for path in pictures}
+
+
 def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
     name = "results/tiny/disruption/prescribed/q-S/BA/50nm.nc"
     content = (copy_of.folder / name).read_bytes()

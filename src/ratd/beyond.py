@@ -17,7 +17,7 @@ SPLIT = 300e-9
 """Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
 N_BOOTSTRAP = 1000
 PREDICTORS = {
-    "Eq. 33": "Eq. 33, A and alpha of each material and type (18 numbers for the paper's nine)",
+    "Eq. 33": "A and alpha for each material and type",
     "cut bound": "c times the cut bound, one c for all grains",
     "cut bound by type": "c times the cut bound, one c a type",
 }
@@ -247,7 +247,7 @@ def fragment_shares(fragments, stage, seed=0):
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
     chosen = fragments[fragments[stage]]
-    for kind, part in chosen.groupby("type", sort=False):
+    for kind, part in chosen.groupby("type"):
         which = np.digitize(part["fragment_n_monomers"], MONOMER_BINS) - 1
         grain = pd.factorize(part["grain"])[0]
         n = grain.max() + 1

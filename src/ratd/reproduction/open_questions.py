@@ -17,6 +17,8 @@ from ratd.reproduction.text import NOTHING, interval, number, with_error
 
 JUSTIFIED = 0.1
 """Probability below which a power law is not given (Clauset et al. 2009)."""
+FEWEST = 50
+"""Fragments below which nothing is said of a power law."""
 LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out"}
 
 
@@ -87,9 +89,9 @@ def fragment_section(data):
                 ]
                 single = own.loc[MONOMER_CLASSES[0], "number_share"]
                 chosen = table[table[stage] & (table["type"] == kind)]
-                rows.append([text, kind, f"{own['n_fragments'].iloc[0]} of {own['n_grains'].iloc[0]}", *cells,
+                rows.append([text, kind, f"{own['n_fragments'].iloc[0]} from {own['n_grains'].iloc[0]}", *cells,
                              number(single), _law(chosen["fragment_n_monomers"], largest)])  # fmt: skip
-        head = ["stage", "type", "fragments of grains"]
+        head = ["stage", "type", "fragments, from grains"]
         head += [f"mass in fragments of {name}" for name in MONOMER_CLASSES]
         parts += [f"Drive `{drive}`:", markdown_table([*head, "number of single monomers", "power law"], rows)]
     return "\n\n".join(
@@ -106,7 +108,7 @@ def fragment_section(data):
 
 def _law(sizes, largest):
     found = power_law(sizes, largest)
-    if not np.isfinite(found["exponent"]):
+    if not np.isfinite(found["exponent"]) or found["n"] < FEWEST:
         return "too few fragments"
     if found["probability"] < JUSTIFIED:
         return f"not justified (p = {found['probability']:.2g})"

@@ -9,6 +9,11 @@ from ratd.reproduction.paper import PRINTED, Printed
 
 NOTHING = "–"
 NO_DATA = "no data"
+NEAR = 1.25
+"""A printed number holds where ours is within this factor of it, unless the paper says "roughly"."""
+ROUGHLY = 2.0
+"""The same where it does."""
+VERDICT = {True: "yes", False: "no", None: NOTHING}
 
 
 def number(value):
@@ -63,10 +68,13 @@ class Answer:
         With its uncertainty.
     ratio : str
         Ours over printed.
+    holds : bool or None
+        Whether the printed value or finding holds for our grains; None where the data do not decide it.
     """
 
     text: str = NOTHING
     ratio: str = NOTHING
+    holds: bool | None = None
 
 
 def over(value, printed):
@@ -76,14 +84,29 @@ def over(value, printed):
     return number(value / printed) if printed else NOTHING
 
 
-def answer(value, error, printed):
-    """Answer of a value with an error to a `Printed`."""
-    return Answer(with_error(value, error), over(value, printed.value) if printed.value is not None else NOTHING)
+def near(values, printed, factor=NEAR):
+    """Whether values lie within a factor of the printed ones, None where one is not finite."""
+    ratio = np.atleast_1d(values) / np.atleast_1d(printed)
+    return bool(((ratio > 1 / factor) & (ratio < factor)).all()) if np.isfinite(ratio).all() else None
 
 
-def range_answer(low, high, printed, more=""):
-    """Answer of a range to a `Printed` with a range."""
-    return Answer(between(low, high) + more, over((low, high), printed.value))
+def beyond(value, error, limit):
+    """Whether a value is above a limit, None where it lies within two errors of it."""
+    return bool(value > limit) if abs(value - limit) > 2 * error else None
+
+
+def answer(value, error, printed, factor=NEAR, holds=None):
+    """Answer of a value with an error to a `Printed`; it holds within a factor, unless it is told."""
+    if printed.value is None:
+        return Answer(with_error(value, error), NOTHING, holds)
+    found = near(value, printed.value, factor) if holds is None else holds
+    return Answer(with_error(value, error), over(value, printed.value), found)
+
+
+def range_answer(low, high, printed, factor=NEAR, more="", holds=None):
+    """Answer of a range to a `Printed` with a range, as `answer`."""
+    found = near((low, high), printed.value, factor) if holds is None else holds
+    return Answer(between(low, high) + more, over((low, high), printed.value), found)
 
 
 @dataclass
@@ -124,7 +147,7 @@ def row_table(rows, drives):
     """
     head = ["where", "what", "printed"]
     for drive in drives:
-        head += [drive, "ratio"]
+        head += [drive, "ratio", "holds"]
     lines = []
     for row in sorted(rows, key=lambda row: list(PRINTED).index(row.key)):
         cells = [row.printed.place, row.printed.what, row.printed.text]
@@ -132,7 +155,7 @@ def row_table(rows, drives):
             common = row.answers.get("")
             own = row.answers.get(drive) or (common if k == 0 else Answer("(same)") if common else None)
             own = own or Answer(NO_DATA)
-            cells += [own.text, own.ratio]
+            cells += [own.text, own.ratio, VERDICT[own.holds]]
         lines.append([*cells, row.reason if row.answers else ""])
     return markdown_table([*head, "why they differ"], lines)
 
