@@ -27,7 +27,7 @@ def test_default_is_the_full_paper():
     assert plan.config["materials"] == ["a-C", "q-S", "co-S"]
     assert plan.sizes == [str(size) for size in range(550, 0, -50)]
     assert plan.config["drives"] == ["prescribed"]
-    assert plan.figures == [2, 4, 5, 6, 7, 8] and plan.common_figures == [1, 10]
+    assert plan.figures == [2, 4, 5, 6, 7, 8, 9] and plan.common_figures == [1, 10]
 
 
 def test_quick_is_three_of_each():
@@ -104,6 +104,15 @@ def test_quick_is_three_of_each():
         ({"figures": {"figure1": {"seed": 99}}}, "figures.figure1.seed is 99", "0 to 29"),
         ({"figures": {"figure8": {"scaled_at_nm": 75}}}, "figures.figure8.scaled_at_nm is 75", "the sizes_nm, 50"),
         ({"figures": {"figure10": {"damped": {"epsilon": 2}}}}, "figures.figure10.damped.epsilon is 2", "at most 1"),
+        (
+            {"figures": {"figure9": {"types": ["BAM1"], "material": "ice"}}},
+            "figures.figure9.material is 'ice'",
+            "a-C, q-S",
+        ),
+        ({"figures": {"figure9": {"sizes_nm": [75]}}}, "figures.figure9.sizes_nm[0] is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"figure9": {"T_vis_ps": [0]}}}, "figures.figure9.T_vis_ps[0] is 0", "above 0"),
+        ({"figures": {"calibration": {"size_nm": 75}}}, "figures.calibration.size_nm is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"calibration": {"reach": 0}}}, "figures.calibration.reach is 0", "above 0"),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),
         ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
@@ -258,7 +267,7 @@ def test_snapshots_concern_the_block_of_the_grain_only():
 
 def test_a_figure_can_be_left_out():
     plan = with_changes({"figures": {"figure4": None}})
-    assert plan.figures == [2, 5, 6, 7, 8]
+    assert plan.figures == [2, 5, 6, 7, 8, 9]
     assert plan.figure4_files("{material}/{seeds}") == []
     assert load(DEFAULT).figure4_files("{material}/{size}/{seeds}")[0] == "q-S/350/0-9"
 

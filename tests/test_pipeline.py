@@ -33,6 +33,17 @@ TINY = {
         "figure5": {"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1},
         "figure6": {"material": "q-S", "sizes_nm": [50]},
         "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
+        "figure9": {
+            "material": "q-S",
+            "types": ["BAM2"],
+            "sizes_nm": [50],
+            "seeds": {"first": 0, "number": 1},
+            "xi_c_nm": [6.4],
+            "T_vis_ps": [9],
+            "epsilon": 0.2,
+            "timestep_factor": 0.1,
+        },
+        "calibration": {"size_nm": 50, "seeds": {"number": 1}, "angular_acceleration": [1e17, 3e17]},
         "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
     },
 }
@@ -42,6 +53,8 @@ FIGURES = {"figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "gr
 COMMON_FIGURES = {"figure1", "figure10"}
 OF_SNAPSHOTS = {"figure5", "grain_page"}
 OF_RUNS = {"figure4"} | OF_SNAPSHOTS
+OF_STUDIES = {"figure9", "calibration_figure"}
+STUDIES = {"parameters", "parameter_table", "calibration_runs", "calibration"}
 
 
 class Pipeline:
@@ -139,7 +152,7 @@ def test_every_stage_leaves_its_files(finished):
     assert {GRAINS, RUNS, "results/tiny/config.yaml"} <= files
     assert "results/tiny/disruption/prescribed/q-S/BA/50nm.nc" in files
     assert {f"results/tiny/ensemble/prescribed/table3.{suffix}" for suffix in ("nc", "csv")} <= files
-    for number in (2, 4, 5, 6, 7, 8):
+    for number in (2, 4, 5, 6, 7, 8, 9):
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.pdf").read_bytes()[:5] == b"%PDF-"
         assert (finished.folder / f"results/tiny/figures/figure{number}_prescribed.png").read_bytes()[1:4] == b"PNG"
     page = (finished.folder / "results/tiny/figures/grain_prescribed.html").read_text()
@@ -184,7 +197,7 @@ def test_change_of_a_plotting_function_reruns_figures_only(copy_of):
     before = copy_of.files()
     style = copy_of.own_source() / "figures" / "style.py"
     style.write_text(re.sub(r'"axes.linewidth": [0-9.]+', '"axes.linewidth": 1.5', style.read_text()))
-    assert set(copy_of.planned()) == FIGURES | COMMON_FIGURES
+    assert set(copy_of.planned()) == FIGURES | COMMON_FIGURES | OF_STUDIES
     done = copy_of.run()
     assert done.returncode == 0, done.stdout
     after = copy_of.files()
@@ -196,14 +209,15 @@ def test_change_of_the_contact_law_reruns_spin_ups_and_what_follows(copy_of):
     law = next((copy_of.own_source() / "laws").glob("jkr*.py"))
     law.write_text(law.read_text() + "\nNEW_CONSTANT = 1.0\n")
     planned = copy_of.planned()
-    assert set(planned) == {"spin_up", "disrupt", "ensemble", "pairs", "figure10"} | FIGURES
+    assert set(planned) == {"spin_up", "disrupt", "ensemble", "pairs", "figure10"} | FIGURES | STUDIES | OF_STUDIES
     assert planned["spin_up"] == 2
 
 
 def test_change_of_the_growth_reruns_everything(copy_of):
     growth = copy_of.own_source() / "growth.py"
     growth.write_text(growth.read_text() + "\nNEW_CONSTANT = 1.0\n")
-    assert set(copy_of.planned()) == {"grow", "spin_up", "disrupt", "ensemble", "figure1"} | FIGURES
+    expected = {"grow", "spin_up", "disrupt", "ensemble", "figure1"} | FIGURES | STUDIES | OF_STUDIES
+    assert set(copy_of.planned()) == expected
 
 
 @pytest.mark.parametrize(
@@ -318,7 +332,7 @@ def test_report_is_one_page_with_captions(finished, tmp_path):
     done = finished.run("--report", str(tmp_path / "report.html"))
     assert done.returncode == 0, done.stdout
     page = (tmp_path / "report.html").read_text()
-    for number in (2, 4, 5, 6, 7, 8):
+    for number in (2, 4, 5, 6, 7, 8, 9):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page

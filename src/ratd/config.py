@@ -16,6 +16,7 @@ import yaml
 from ratd.errors import InputError
 from ratd.growth import RadiusDistribution, smallest_a_eff
 from ratd.materials import MATERIALS, Material, mix
+from ratd.parameters import ways
 from ratd.units import GPA, MJ_PER_M2, NM, PS
 
 # 10.0 is no whole number here: it would not do as the length of a list
@@ -272,6 +273,15 @@ def check(config, schemas="config/schema"):
     if figure8 is not None:
         for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
             plan.find(figure8[name], key, f"figures.figure8.{name}")
+    figure9 = config["figures"]["figure9"]
+    if figure9 is not None:
+        plan.find(figure9["material"], "materials", "figures.figure9.material")
+        for key in ("types", "sizes_nm"):
+            for k, value in enumerate(figure9[key]):
+                plan.find(value, key, f"figures.figure9.{key}[{k}]")
+    own = config["figures"]["calibration"]
+    if own is not None:
+        plan.find_cell(own, "figures.calibration")
     return plan
 
 
@@ -454,7 +464,7 @@ class Plan:
     @property
     def figures(self):
         """Numbers of the figures to draw for each drive, list of int."""
-        return self._wanted(2, 4, 5, 6, 7, 8)
+        return self._wanted(2, 4, 5, 6, 7, 8, 9)
 
     @property
     def common_figures(self):
@@ -470,7 +480,7 @@ class Plan:
         Parameters
         ----------
         name : str
-            "sizes", "blocks", or a key of the config that holds a list of names.
+            "sizes", "blocks", "calibration_labels", or a key of the config that holds a list of names.
 
         Returns
         -------
@@ -481,7 +491,7 @@ class Plan:
             values = {block for cell in self.cells for drive in drives for block in self.blocks(cell, drive)}
             values = sorted(values | set(self.blocks()))
         else:
-            values = self.sizes if name == "sizes" else self.config[name]
+            values = getattr(self, name) if name in ("sizes", "calibration_labels") else self.config[name]
         return "|".join(re.escape(value) for value in values)
 
     def figure4_files(self, path, drive=None):
@@ -613,6 +623,84 @@ class Plan:
             "largest": self.radii["largest"],
             **own,
         }
+
+    @property
+    def parameter_ways(self):
+        """What figure 9 varies, list of dict: parameter, changed (constants), label (in names of files).
+
+        Empty where the figure is left out.
+        """
+        own = self.config["figures"]["figure9"]
+        if own is None:
+            return []
+        units = {"xi_c": ("nm", NM), "T_vis": ("ps", PS)}
+        values = {name: [value * units[name][1] for value in own[f"{name}_{units[name][0]}"]] for name in units}
+        found = []
+        for parameter, changed in ways(self.materials[own["material"]], values):
+            unit, factor = units.get(parameter, ("", 1.0))
+            label = "".join(f"_{value / factor:.6g}{unit}" for value in changed.values())
+            found.append({"parameter": parameter, "changed": changed, "label": f"{parameter}{label}"})
+        return found
+
+    def parameter_files(self, path):
+        """Files of all types, sizes and ways of figure 9.
+
+        Parameters
+        ----------
+        path : str
+            With the fields ``{type}``, ``{size}``, ``{label}``.
+
+        Returns
+        -------
+        list of str
+            The ways of one type and size stand together.
+        """
+        own = self.config["figures"]["figure9"]
+        return [
+            path.format(type=kind, size=size_label(size), label=way["label"])
+            for kind in (own["types"] if own else ())
+            for size in own["sizes_nm"]
+            for way in self.parameter_ways
+        ]
+
+    def parameters(self, drive, kind, size):
+        """Settings of the runs of figure 9 of one type and size, one a way (see `ratd.variations.spin_up_ways`)."""
+        own = self.config["figures"]["figure9"]
+        first = own["seeds"]["first"]
+        pace = {"epsilon": own["epsilon"], "angular_acceleration": None, "timestep_factor": own["timestep_factor"]}
+        return [
+            {
+                "grain": self.grow(own["material"], kind, size),
+                "changed": way["changed"],
+                "seeds": list(range(first, first + own["seeds"]["number"])),
+                "spin_up": {"drive": drive} | self.spin_up_of(drive) | (pace if drive == "prescribed" else {}),
+            }
+            for way in self.parameter_ways
+        ]
+
+    @property
+    def calibration_labels(self):
+        """Angular accelerations of the calibration as they stand in names of files; empty where it is left out."""
+        own = self.config["figures"]["calibration"]
+        return [] if own is None else [f"{value:.6g}" for value in own["angular_acceleration"]]
+
+    def calibration_runs(self, label):
+        """Settings of the runs of the calibration at one angular acceleration, in a list of one way.
+
+        The cell is that of the config, and so are all settings of the literal drive but the angular acceleration.
+        """
+        own = self.config["figures"]["calibration"]
+        first = own["seeds"]["first"]
+        pace = {"epsilon": None, "angular_acceleration": float(label)}
+        return [
+            {
+                "grain": self.grow(own["material"], own["type"], size_label(own["size_nm"])),
+                "changed": {},
+                "seeds": list(range(first, first + own["seeds"]["number"])),
+                "spin_up": {"drive": "literal"} | self.spin_up_of("literal") | pace,
+                "reach": own["reach"],
+            }
+        ]
 
     def figure(self, number, drive=None):
         """Settings of one figure, with its own part of the config, sizes in m."""

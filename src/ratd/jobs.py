@@ -32,6 +32,10 @@ WRITES = {
     "composition": ("table1", "table2"),
     "pairs": ("pairs",),
     "reproduction_data": ("fragments",),
+    "parameters": ("disruption",),
+    "parameter_table": ("parameters",),
+    "calibration_runs": ("spinup",),
+    "calibration": ("calibration",),
 }
 """Kinds of files that the script of a rule writes."""
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import composition, ensemble, fragmentation, marks, pair, spinup
+from ratd import calibration, composition, ensemble, fragmentation, marks, pair, parameters, spinup
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -300,6 +300,13 @@ KINDS = {
     "table1": Kind("Table 1: ratios of elements in co-S", _entries(composition.TABLE_1_COLUMNS)),
     "table2": Kind("Table 2: properties of the materials", _entries(composition.TABLE_2_COLUMNS)),
     "fragments": Kind("Fragments that leave grains", _FRAGMENTS, ("drive",), _FRAGMENTS_RAGGED),
+    "parameters": Kind(
+        "Grains spun up with other rolling displacements and viscous times", _entries(parameters.PARAMETER_COLUMNS)
+    ),
+    "calibration": Kind(
+        "Onset of mass loss with the literal drive, and the calibrated angular acceleration",
+        _entries(calibration.CALIBRATION_COLUMNS) | _over((), calibration.FIT_VALUES, nan=True),
+    ),
     "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
 }
 """Kind of file -> its layout."""

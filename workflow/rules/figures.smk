@@ -360,3 +360,4 @@ rule figures:
             "<results>/figures/grain_{drive}.html",
             drive=PLAN.config["drives"] if 5 in PLAN.figures else [],
         ),
+        rules.calibration_figure.output if CALIBRATION else [],

@@ -1,0 +1,141 @@
+"""The one free number of the literal drive: d omega/dt at the printed step factor, fixed on the onset of mass loss.
+
+The printed equations with the Coriolis force at the old velocity feed in energy at a rate ~ omega^2 dt, so that a grain
+comes apart at an omega that depends on d omega/dt (docs/model.md). The paper gives no d omega/dt that could be used
+("hours" would be 1e16 steps), but it shows where the mass of one cell starts to fall (Fig. 4). Which d omega/dt gives
+just that is found by a fit over several of them.
+"""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ratd.errors import InputError
+from ratd.marks import disruption
+
+__all__ = ["CALIBRATION_COLUMNS", "FIT_VALUES", "MARKS", "calibrate", "calibration_table"]
+
+MARKS = {
+    "omega_first_loss": "first loss of mass",
+    "omega_mass_99": "1 % of the mass lost",
+    "omega_mass_75": "25 % of the mass lost",
+}
+ONSET = "omega_mass_99"
+"""The mark that stands for the onset in Fig. 4: a single monomer that comes off cannot be seen there."""
+ONSET_LOSS = 0.01
+LAW_EXPONENT = 1.0 / 3.0
+"""Exponent of d omega/dt in omega ~ (d omega/dt / dt)^(1/3), what the energy that is fed in would give by itself."""
+FARTHEST = 100.0
+"""No answer is given that lies farther than this factor outside the d omega/dt of the runs."""
+CALIBRATION_COLUMNS = {
+    "material": ("", "material of the monomers"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "end_reason": ("", "why the run ended"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "angular_acceleration": ("rad s-2", "angular acceleration at the start"),
+    "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
+    "timestep": ("s", "first time step"),
+    "steps": ("1", "number of time steps"),
+    "omega_first_loss": ("rad s-1", "angular velocity of the first loss of mass"),
+    "omega_mass_99": ("rad s-1", "angular velocity at which the largest fragment has lost 1 % of the initial mass"),
+    "omega_mass_75": ("rad s-1", "angular velocity at which the largest fragment has lost 25 % of the initial mass"),
+    "omega_end": ("rad s-1", "angular velocity of the last record"),
+}
+"""Units and meaning of the columns of `calibration_table`."""
+FIT_VALUES = {
+    "omega_onset": ("rad s-1", "onset of mass loss that the literal drive is to have"),
+    "exponent": ("1", "exponent p of omega ~ (d omega/dt)^p, fitted with a prefactor for each grain"),
+    "exponent_error": ("1", "standard error of the exponent"),
+    "calibrated": ("rad s-2", "d omega/dt at which the mean onset is the wanted one"),
+    "calibrated_low": ("rad s-2", "calibrated d omega/dt, one standard error lower"),
+    "calibrated_high": ("rad s-2", "calibrated d omega/dt, one standard error higher"),
+    "calibrated_by_law": ("rad s-2", "the same with the exponent 1/3, from the least d omega/dt of each grain"),
+}
+"""Units and meaning of what `calibrate` gives."""
+
+
+def calibration_table(runs):
+    """Where the mass of each run starts to fall.
+
+    Parameters
+    ----------
+    runs : list of xarray.Dataset
+        From `ratd.spin_up`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of `CALIBRATION_COLUMNS`, sorted by seed and angular acceleration; NaN where a run ended before a mark.
+    """
+    rows = []
+    for run in runs:
+        marks = disruption(run)
+        row = {name: run.attrs[name] for name in CALIBRATION_COLUMNS if name in run.attrs}
+        row |= {name: float(marks[name]) for name in CALIBRATION_COLUMNS if name in marks}
+        gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
+        row["omega_mass_99"] = float(run["omega"].values[gone.argmax()]) if gone.any() else np.nan
+        rows.append(row)
+    table = pd.DataFrame(rows, columns=list(CALIBRATION_COLUMNS))
+    return table.sort_values(["seed", "angular_acceleration"], ignore_index=True)
+
+
+def calibrate(table, omega_onset, mark=ONSET):
+    """d omega/dt that gives the wanted onset of mass loss.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `calibration_table`.
+    omega_onset : float
+        [rad/s].
+    mark : str
+        One of `MARKS`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars of `FIT_VALUES`. ln omega is fitted by least squares as a prefactor for each grain and one exponent for
+        all; the mean prefactor stands for the grains that the paper averages over. The errors are those of the
+        exponent and of the mean over the grains; the latter is 0 where there is one grain. All but ``omega_onset`` is
+        NaN where fewer than two accelerations have the mark, and so is every d omega/dt that lies more than a factor
+        `FARTHEST` outside those of the runs.
+
+    Raises
+    ------
+    InputError
+        If `omega_onset` is not above zero.
+    """
+    if not omega_onset > 0:
+        raise InputError(f"calibrate: omega_onset is {omega_onset}, but must be above 0 rad/s")
+    there = table[table[mark].notna()]
+    value = dict.fromkeys(FIT_VALUES, np.nan) | {"omega_onset": float(omega_onset)}
+    if there["angular_acceleration"].nunique() > 1:
+        x, y = np.log(there["angular_acceleration"]), np.log(there[mark])
+        grain = there["seed"]
+        inner_x, inner_y = x - x.groupby(grain).transform("mean"), y - y.groupby(grain).transform("mean")
+        spread = (inner_x**2).sum()
+        if spread > 0:
+            exponent = (inner_x * inner_y).sum() / spread
+            freedom = len(there) - grain.nunique() - 1
+            residual = inner_y - exponent * inner_x
+            error = np.sqrt((residual**2).sum() / freedom / spread) if freedom > 0 else np.nan
+            # each grain's own answer; their mean, and its error with that of the exponent, which all share
+            own = ((np.log(omega_onset) - (y - exponent * x).groupby(grain).mean()) / exponent).to_numpy()
+            lever = x.mean() - own.mean()
+            scatter = own.std(ddof=1) / np.sqrt(len(own)) if len(own) > 1 else 0.0
+            total = np.hypot(lever * error / exponent, scatter)
+            first = there.loc[there.groupby("seed")["angular_acceleration"].idxmin()]
+            law = np.log(first["angular_acceleration"]) + np.log(omega_onset / first[mark]) / LAW_EXPONENT
+            value |= {"exponent": exponent, "exponent_error": error, "calibrated": np.exp(own.mean())}
+            value |= {"calibrated_low": np.exp(own.mean() - total), "calibrated_high": np.exp(own.mean() + total)}
+            value["calibrated_by_law"] = np.exp(law.mean())
+            near = (np.exp(x.min()) / FARTHEST, np.exp(x.max()) * FARTHEST)
+            for name in ("calibrated", "calibrated_low", "calibrated_high", "calibrated_by_law"):
+                value[name] = value[name] if near[0] <= value[name] <= near[1] else np.nan
+    return xr.Dataset(
+        {
+            name: ((), float(value[name]), {"units": units, "long_name": meaning})
+            for name, (units, meaning) in FIT_VALUES.items()
+        }
+    )

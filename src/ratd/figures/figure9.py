@@ -1,0 +1,134 @@
+"""Fig. 9: disruption of the same grains with other critical rolling displacements and viscous times."""
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.lines import Line2D
+
+from ratd.ensemble import cell_statistics
+from ratd.errors import InputError
+from ratd.figures.style import (
+    GREY,
+    TWO_COLUMNS,
+    drive_of,
+    drive_text,
+    logarithmic,
+    nanometres,
+    new_figure,
+    plural,
+    size_limits,
+    sizes_label,
+    styled,
+    type_style,
+)
+from ratd.parameters import MARKS, OWN, PARAMETERS, effect
+from ratd.units import NM, PS
+
+AXIS = {
+    "xi_c": (NM, r"critical rolling displacement $\xi_\mathrm{crit}$ [nm]", "{:g} nm"),
+    "T_vis": (PS, r"viscous time $T_\mathrm{vis}$ [ps]", "{:g} ps"),
+}
+"""Parameter -> unit of its axis [SI], label, text of a value."""
+PAPER_EFFECT = (9 * PS, 1.11)
+"""T_vis [s] and omega_disr over that at 5 ps, of a-C BAM2, as the paper states it (Sect. 7.5)."""
+LINES = ((0, (4, 2)), (0, (1, 1.2)), "-")
+"""Lines of the types in their order; the paper has dashed BA and dotted BAM2."""
+OWN_COLOUR = "#D55E00"
+MARK_TEXT = {"omega_disr": r"$\omega_\mathrm{disr}$", "omega_mass_75": "25 % of the mass lost"}
+
+
+@styled
+def figure9(table):
+    """omega_disr against size with each setting, and how far the median grain moves with it (Fig. 9).
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        What `ratd.parameters.parameter_table` returns, of one drive.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A column for each of the two parameters. Above, the mean over the grains of a size, a line a setting. Below,
+        the ratio of a mark to that of the same grain with the material as it is, median and its standard error.
+
+    Raises
+    ------
+    InputError
+        If there are no runs.
+
+    References
+    ----------
+    Reissl et al. (2024), A&A 692, A60, Fig. 9 and Sect. 7.5.
+    """
+    if not len(table):
+        raise InputError("figure9: give at least one run")
+    n_grains = len(table.drop_duplicates(["material", "type", "a_eff", "seed"]))
+    material = ", ".join(dict.fromkeys(table["material"]))
+    title = f"{plural(n_grains, f'{material} grain')} with every setting, {drive_text(drive_of(table))}"
+    figure = new_figure(TWO_COLUMNS, 0.72 * TWO_COLUMNS, title)
+    panels = figure.subplots(2, len(PARAMETERS), sharey="row", squeeze=False)
+    style = type_style(table["type"])
+    lines = {kind: LINES[k % len(LINES)] for k, kind in enumerate(style)}
+    for (top, bottom), parameter in zip(panels.T, PARAMETERS, strict=True):
+        here = table[table["parameter"].isin((OWN, parameter))]
+        _against_size(top, here, parameter, style, lines)
+        _against_value(bottom, here, parameter, style, lines)
+    logarithmic(panels[0, 0].yaxis)
+    panels[0, 0].set_ylabel(r"mean $\omega_\mathrm{disr}$ [rad s$^{-1}$]")
+    panels[1, 0].set_ylabel(
+        "omega over that of the same grain\nwith the material as it is".replace("omega", r"$\omega$")
+    )
+    kinds = [Line2D([], [], color=look["color"], marker=look["marker"], ls=lines[kind], label=kind)
+             for kind, look in style.items()]  # fmt: skip
+    marks = [
+        Line2D([], [], color="black", marker="o", mfc=fill, ls="none", label=MARK_TEXT[mark])
+        for mark, fill in zip(MARKS, ("black", "white"), strict=True)
+    ]
+    stated = Line2D([], [], color=GREY, marker="x", ls="none", label="BAM2, stated in the paper")
+    figure.legend(handles=[*kinds, *marks, stated], loc="outside lower center", ncols=6)
+    return figure
+
+
+def _against_size(axes, table, parameter, style, lines):
+    """Mean omega_disr against size: a colour a value, a kind of line a type."""
+    unit, _, text = AXIS[parameter]
+    values = np.sort(table[PARAMETERS[parameter]].unique())
+    own = table.loc[table["parameter"] == OWN, PARAMETERS[parameter]].iloc[0]
+    shades = dict(zip(values, colormaps["viridis"](np.linspace(0.0, 0.9, len(values))), strict=True))
+    handles = []
+    for value in values:
+        look = {"color": OWN_COLOUR, "lw": 1.6, "zorder": 3} if value == own else {"color": shades[value], "lw": 0.8}
+        for kind in style:
+            part = table[(table["type"] == kind) & (table[PARAMETERS[parameter]] == value)]
+            cells = cell_statistics(part, ("type", "a_eff"))
+            x, mean = nanometres(cells["a_eff"]), cells["omega_disr_mean"]
+            axes.plot(x, mean, ls=lines[kind], marker=style[kind]["marker"], ms=2.5, **look)
+        handles.append(Line2D([], [], label=text.format(value / unit), **look))
+    axes.set_yscale("log")
+    axes.set_xlim(*nanometres(size_limits(table["a_eff"])))
+    axes.set_xlabel(sizes_label())
+    axes.legend(handles=handles, ncols=2, loc="best")
+
+
+def _against_value(axes, table, parameter, style, lines):
+    """Ratios of the marks to those of the same grain with the material as it is, against the value of the parameter."""
+    unit, label, _ = AXIS[parameter]
+    axes.axhline(1.0, color="black", lw=0.6)
+    logarithm = parameter == "xi_c"  # its values double
+    steps = np.array([-1.5, -0.5, 0.5, 1.5])[: len(MARKS) * len(style)]
+    place = iter(steps - steps.mean())
+    for kind, look in style.items():
+        for mark in MARKS:
+            found = effect(table[table["type"] == kind], parameter, mark)
+            x, shift = found["value"].to_numpy() / unit, next(place, 0.0)
+            x = x * 1.05**shift if logarithm else x + 0.12 * shift
+            axes.errorbar(
+                x, found["median"], found["error"], lw=0.8, elinewidth=0.8, capsize=1.5, **look,
+                ls=lines[kind] if mark == MARKS[0] else "none", mfc=look["color"] if mark == MARKS[0] else "white",
+            )  # fmt: skip
+    if parameter == "T_vis":
+        axes.plot(PAPER_EFFECT[0] / PS, PAPER_EFFECT[1], color=GREY, marker="x", ls="none")
+    if logarithm:
+        axes.set_xscale("log")
+        logarithmic(axes.xaxis)
+    axes.set_xlabel(label)

@@ -1,0 +1,101 @@
+"""The calibration of the literal drive: the marks of its runs, the fit, the figure."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ratd import io
+from ratd.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table
+from ratd.errors import InputError
+from ratd.figures import calibration
+from ratd.growth import grow
+from ratd.spinup import spin_up
+
+ACCELERATIONS = (3e16, 1e17)
+
+
+def made_up(exponent, prefactors=(1.0,), accelerations=(1e14, 1e15, 1e16)):
+    """Runs whose marks follow a power law, with a prefactor for each grain."""
+    rows = [
+        dict.fromkeys(CALIBRATION_COLUMNS, 1.0)
+        | {"material": "q-S", "type": "BAM2", "end_reason": "", "seed": seed, "angular_acceleration": a}
+        | {"omega_first_loss": prefactor * a**exponent, "omega_mass_99": 2.0 * prefactor * a**exponent}
+        for seed, prefactor in enumerate(prefactors)
+        for a in accelerations
+    ]
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    grain = grow("BAM2", 75e-9, "q-S", 0)
+    return [spin_up(grain, drive="literal", angular_acceleration=a, timestep_factor=0.05) for a in ACCELERATIONS]
+
+
+@pytest.fixture(scope="module")
+def table(runs):
+    return calibration_table(runs)
+
+
+def test_marks_of_real_runs_lie_in_order(runs, table):
+    assert list(table["angular_acceleration"]) == list(ACCELERATIONS)
+    assert (table["omega_first_loss"] <= table["omega_mass_99"]).all()
+    assert (table["omega_mass_99"] <= table["omega_mass_75"]).all()
+    mass, omega = runs[0]["mass"].values / runs[0].attrs["initial_mass"], runs[0]["omega"].values
+    k = list(omega).index(table["omega_mass_99"][0])
+    assert mass[k] <= 0.99 < mass[k - 1]
+
+
+def test_a_power_law_is_found_and_inverted():
+    fit = calibrate(made_up(0.25, (1.0, 1.1, 1.1**-1)), omega_onset=2.0 * 1e13**0.25)
+    assert float(fit["exponent"]) == pytest.approx(0.25)
+    assert float(fit["calibrated"]) == pytest.approx(1e13)
+    # ln of the grains' own answers: 0 and +- 4 ln 1.1; the exponent is exact
+    error = np.log(float(fit["calibrated_high"]) / float(fit["calibrated"]))
+    assert error == pytest.approx(4 * np.log(1.1) / np.sqrt(3), rel=1e-6)
+    assert float(fit["calibrated_low"]) < 1e13
+
+
+def test_with_the_law_the_least_acceleration_decides():
+    fit = calibrate(made_up(1 / 3, (1.0,)), omega_onset=6e4)
+    assert float(fit["calibrated_by_law"]) == pytest.approx(2.7e13)
+    assert float(fit["calibrated"]) == pytest.approx(2.7e13)
+
+
+def test_no_answer_far_outside_the_runs():
+    fit = calibrate(made_up(1 / 3), omega_onset=2e3)  # the law alone would say 1e9
+    assert np.isnan(float(fit["calibrated"])) and np.isnan(float(fit["calibrated_by_law"]))
+    assert float(fit["exponent"]) == pytest.approx(1 / 3)
+
+
+def test_scatter_about_the_law_widens_the_answer():
+    table = made_up(1 / 3, (1.0,))
+    table["omega_mass_99"] *= [1.0, 1.1, 1.0]
+    fit = calibrate(table, omega_onset=6e4)
+    assert float(fit["exponent_error"]) > 0 and float(fit["calibrated_high"]) > 1.2 * float(fit["calibrated"])
+
+
+@pytest.mark.parametrize("accelerations", [(1e15,), ()])
+def test_too_few_runs_give_no_answer(accelerations):
+    fit = calibrate(made_up(0.3, accelerations=accelerations).reindex(columns=list(CALIBRATION_COLUMNS)), 3e8)
+    assert np.isnan(float(fit["calibrated"])) and float(fit["omega_onset"]) == 3e8
+
+
+def test_an_onset_that_is_none_is_refused(table):
+    with pytest.raises(InputError, match="omega_onset is -1"):
+        calibrate(table, -1)
+
+
+def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
+    fit = calibrate(table, 2e9)
+    dataset = table.rename_axis("entry").to_xarray().drop_vars("entry").merge(fit)
+    io.write(tmp_path / "a.nc", dataset, "calibration")
+    back = io.read(tmp_path / "a.nc", "calibration")
+    assert float(back["calibrated"]) == float(fit["calibrated"])
+    (axes,) = calibration(table, fit).axes
+    drawn = {line.get_label(): line for line in axes.get_lines()}
+    assert list(drawn["1 % of the mass lost"].get_ydata()) == list(table["omega_mass_99"])
+    diamond = next(line for label, line in drawn.items() if line.get_marker() == "D")
+    assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == 2e9
+    with pytest.raises(InputError, match="at least one run"):
+        calibration(table[:0], fit)
