@@ -1,11 +1,12 @@
 """What the two least known constants do to disruption: critical rolling displacement and viscous time (Fig. 9)."""
 
+import numpy as np
 import pandas as pd
 
 from ratd.errors import InputError
 from ratd.validation.statistics import median_of
 
-__all__ = ["MARKS", "PARAMETERS", "PARAMETER_COLUMNS", "effect", "parameter_table", "ways"]
+__all__ = ["MARKS", "PARAMETERS", "PARAMETER_COLUMNS", "beside_own", "effect", "parameter_table", "ways"]
 
 PARAMETERS = {"xi_c": "critical_rolling_displacement", "T_vis": "viscous_time"}
 """Name of what is varied -> attribute of `ratd.Material`, and column of the table."""
@@ -76,12 +77,39 @@ def parameter_table(files):
         for marks in grains:
             grain = {name: marks.attrs[name] for name in _GRAIN}
             rows.append({"parameter": parameter} | grain | constants | {name: float(marks[name]) for name in MARKS})
-    own = {_key(row): row for row in rows if row["parameter"] == OWN}
-    for row in rows:
-        if _key(row) not in own:
-            raise InputError(f"parameter_table: the grain {_key(row)} was not spun up with its material as it is")
-        row |= {f"{name}_ratio": row[name] / own[_key(row)][name] for name in MARKS}
-    return pd.DataFrame(rows, columns=list(PARAMETER_COLUMNS))
+    table = pd.DataFrame(rows, columns=list(PARAMETER_COLUMNS))
+    return beside_own(table, table["parameter"] == OWN, "its material as it is")
+
+
+def beside_own(table, own, words):
+    """A table of runs with the ratio of each mark to that of the same grain in the run that it is compared with.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        With what names a grain (material, type, drive, a_eff, seed) and `MARKS`.
+    own : array_like of bool
+        Which rows are those to compare with, one a grain.
+    words : str
+        What these are, for the message.
+
+    Returns
+    -------
+    pandas.DataFrame
+        With the columns ``MARK_ratio``.
+
+    Raises
+    ------
+    InputError
+        If a grain has no such row.
+    """
+    keys = pd.MultiIndex.from_frame(table[_GRAIN])
+    reference = table[np.asarray(own)].set_index(_GRAIN)[list(MARKS)]
+    missing = keys.difference(reference.index)
+    if len(missing):
+        raise InputError(f"the grain {', '.join(map(str, missing[0]))} was not spun up with {words}")
+    reference = reference.loc[keys]
+    return table.assign(**{f"{name}_ratio": table[name].to_numpy() / reference[name].to_numpy() for name in MARKS})
 
 
 def effect(table, parameter, mark):
@@ -108,7 +136,3 @@ def effect(table, parameter, mark):
         for (kind, value), part in here.groupby(["type", PARAMETERS[parameter]])
     ]
     return pd.DataFrame(rows)
-
-
-def _key(row):
-    return tuple(row[name] for name in _GRAIN)

@@ -32,7 +32,7 @@ PAPER_EFFECT = (9 * PS, 1.11)
 """T_vis [s] and omega_disr over that at 5 ps, of a-C BAM2, as the paper states it (Sect. 7.5)."""
 LINES = ((0, (4, 2)), (0, (1, 1.2)), "-")
 """Lines of the types in their order; the paper has dashed BA and dotted BAM2."""
-OWN_COLOUR = "#D55E00"
+OWN_COLOUR = "black"
 MARK_TEXT = {"omega_disr": r"$\omega_\mathrm{disr}$", "omega_mass_75": "25 % of the mass lost"}
 
 
@@ -66,13 +66,14 @@ def figure9(table):
     material = ", ".join(dict.fromkeys(table["material"]))
     title = f"{plural(n_grains, f'{material} grain')} with every setting, {drive_text(drive_of(table))}"
     figure = new_figure(TWO_COLUMNS, 0.72 * TWO_COLUMNS, title)
-    panels = figure.subplots(2, len(PARAMETERS), sharey="row", squeeze=False)
+    panels = figure.subplots(2, len(PARAMETERS), squeeze=False)
     style = type_style(table["type"])
     lines = {kind: LINES[k % len(LINES)] for k, kind in enumerate(style)}
     for (top, bottom), parameter in zip(panels.T, PARAMETERS, strict=True):
         here = table[table["parameter"].isin((OWN, parameter))]
         _against_size(top, here, parameter, style, lines)
         _against_value(bottom, here, parameter, style, lines)
+    panels[0, 1].sharey(panels[0, 0])
     logarithmic(panels[0, 0].yaxis)
     panels[0, 0].set_ylabel(r"mean $\omega_\mathrm{disr}$ [rad s$^{-1}$]")
     panels[1, 0].set_ylabel(
