@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 import yaml
 
 from files import make_run, runs_file
@@ -17,12 +18,14 @@ from ratd.fragmentation import FRAGMENT_COLUMNS
 from ratd.growth import grow
 from ratd.materials import MATERIALS
 from ratd.reproduction import figures
+from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.collect import Collection
 from ratd.reproduction.data import Data
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
+from ratd.shape import porosity, semi_axes
 from synthetic_runs import make_table
 
 ROOT = Path(__file__).parents[1]
@@ -132,6 +135,34 @@ def test_rows_stand_in_the_order_of_the_paper_with_what_is_missing_named():
     first, second = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
     assert first[2:] == ["20 nm", "30 nm", "1.5", "(same)", "–", ""]
     assert second[3:] == ["1 %", "0.5", "no data", "–", "because"]
+
+
+def test_porosity_of_a_solid_sphere_with_eq_3_as_printed():
+    moments = np.full(3, 0.4 * 4 / 3 * np.pi * 2650.0 * 1e-7**5)
+    # alpha_k is proportional to the moments: a smaller prefactor acts as smaller moments
+    as_printed = porosity(*semi_axes(5 / (4 * np.pi) / (15 / (8 * np.pi)) * moments, 2650.0, 1e-7), 1e-7)
+    assert printed_porosity(porosity(*semi_axes(moments, 2650.0, 1e-7), 1e-7)) == pytest.approx(as_printed, rel=1e-9)
+    assert as_printed == pytest.approx(-0.84, abs=0.005)
+
+
+def test_studies_are_told_from_their_columns(folder):
+    """Tables of another origin, with the columns that the text needs."""
+    data = Data(str(folder))
+    grains = pd.DataFrame({"type": ["BAM2"] * 4, "omega_disr_ratio": [1.0, 1.1, 1.12, 1.14]})
+    grains["viscous_time"] = [5e-12, 9e-12, 9e-12, 9e-12]
+    grains["critical_rolling_displacement"] = 2e-10
+    data.__dict__["parameters"] = {"prescribed": grains}
+    names = ["consistent", "damping", "damping"]
+    marks = {"omega_disr_ratio": [1.0, 0.5, 0.7], "omega_mass_75_ratio": [1.0, 0.8, 0.8]}
+    data.__dict__["formulae"] = pd.DataFrame({"formula": names, **marks})
+    values = {"omega_onset": 3e8, "calibrated": 3.4e13, "exponent": 0.32, "exponent_error": 0.01}
+    values |= {"calibrated_low": 3e13, "calibrated_high": 4e13}
+    data.__dict__["calibration"] = xr.Dataset(values | {"seed": ("entry", [0, 1])})
+    text = report(data, "reproduction")
+    row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
+    assert "1.120 ± " in row and "| yes |" in row
+    assert "| damping | 0.60 ± 0.1" in text and "| 0.8 | 2 |" in text
+    assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 2 runs" in text
 
 
 def test_fig_1_is_as_printed():

@@ -1,7 +1,7 @@
 # The reproduction document: its data, collected from the results of the config in use, and what is drawn from them.
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
-from ratd.reproduction.data import CALIBRATION, FOLDER, PARAMETERS, Data
+from ratd.reproduction.data import CALIBRATION, FOLDER, FORMULAE, PARAMETERS, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -43,6 +43,7 @@ rule reproduction_data:
                 path
                 for path in (
                     f"{PLAN.results}/{CALIBRATION}",
+                    f"{PLAN.results}/{FORMULAE}",
                     *expand(
                         f"{PLAN.results}/{PARAMETERS}", drive=PLAN.config["drives"]
                     ),

@@ -6,7 +6,7 @@ from ratd.beyond import SPLIT
 from ratd.figures.style import plural
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
-from ratd.reproduction.text import NOTHING, between, number, with_error
+from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
 from ratd.units import NM
 from ratd.validation.show import lammps, literal
 from ratd.validation.statistics import median_of
@@ -168,6 +168,49 @@ def _order(table, column):
         return NOTHING
     medians = table[table["nm"].isin(common)].groupby("type")[column].median().dropna().sort_values()
     return " < ".join(medians.index)
+
+
+def formula_section(data):
+    """What each printed formula changes: those of the contacts from their study, Eq. 3 from the table of grains."""
+    table = data.formulae
+    parts = []
+    if table is None:
+        parts.append("The study of the printed formulae of the contacts, one at a time, is not part of the data.")
+    else:
+        own = table["formula"] == "consistent"
+        rows = []
+        for name, part in table[~own].groupby("formula", sort=False):
+            cells = [name]
+            for mark in ("omega_disr", "omega_mass_75"):
+                found = median_of(part[f"{mark}_ratio"])
+                cells.append(with_error(found["median"], found["error"]))
+            rows.append([*cells, str(len(part))])
+        parts.append(
+            f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
+            "printed and all else as in the consistent model; ratios to the same grain in the consistent model, "
+            "medians: sliding_stiffness and twisting_stiffness with G* = G/(2 - 2 nu²) in Eqs. 13 and 17, "
+            "sliding_limit with zeta_c = r0 (1 - nu)/(16 pi), damping without that force, which Eq. 29 leaves out."
+        )
+        parts.append(markdown_table(["formula as printed", "omega_disr", "omega at 25 % mass loss", "runs"], rows))
+    grains = max(data.tables.values(), key=len)
+    rows = []
+    for kind, part in grains.groupby("type", sort=False):
+        mean = [mean_and_error(part["porosity"]), mean_and_error(printed_porosity(part["porosity"]))]
+        rows.append([kind, *(with_error(*own) for own in mean), str(len(part))])
+    parts.append(
+        "Eq. 3 as printed, 5/(4 pi) in place of 15/(8 pi), makes all three axes shorter by a factor sqrt(2/3) and "
+        "changes the porosity alone (mean over all sizes):"
+    )
+    parts.append(markdown_table(["type", "P", "P with Eq. 3 as printed", "grains"], rows))
+    return "\n\n".join(parts)
+
+
+def printed_porosity(porosity):
+    """Porosity with the prefactor 5/(4 pi) of the printed Eq. 3, from that with 15/(8 pi); -0.84 for a solid sphere.
+
+    P = 1 - a_eff^3/(a b c), and each axis goes with the root of the prefactor.
+    """
+    return 1.0 - (1.0 - porosity) * 1.5**1.5
 
 
 def literal_section(data):

@@ -17,6 +17,7 @@ FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
 PARAMETERS = "parameters/{drive}.nc"
 CALIBRATION = "calibration/fit.nc"
+FORMULAE = "formulae/table.nc"
 STUDIES = ("lammps", "literal")
 """Checks of the validation that the document takes numbers from."""
 DRIVEN_FIGURES = {
@@ -152,6 +153,11 @@ class Data:
     def calibration(self):
         """Calibration of the drive literal, a Dataset, or None."""
         return io.read(self.path(CALIBRATION), "calibration") if self.has(CALIBRATION) else None
+
+    @cached_property
+    def formulae(self):
+        """Grains spun up with single formulae as printed, a table, or None."""
+        return io.read(self.path(FORMULAE), "formulae").to_dataframe() if self.has(FORMULAE) else None
 
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""

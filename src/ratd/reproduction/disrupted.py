@@ -268,7 +268,7 @@ def _parameters(data):
     def last(column, kinds, holds):
         def evaluate(table, printed):
             here = table[table["type"].isin(kinds) & table["omega_disr_ratio"].notna()]
-            here = here[np.isclose(here[column], table[column].max())]
+            here = here[np.isclose(here[column], table[column].max(), rtol=1e-6, atol=0)]
             return _median(here["omega_disr_ratio"], printed, holds=holds)
 
         return evaluate

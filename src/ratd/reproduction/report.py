@@ -182,7 +182,7 @@ def _argument(data, pictures):
         "### One free number of the literal drive",
         argument.calibration_section(data),
         "### Each printed formula alone",
-        "The study of the printed formulae, one at a time, is not part of the data.",
+        argument.formula_section(data),
     ]
 
 
