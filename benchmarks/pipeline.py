@@ -57,15 +57,16 @@ def measure(out, plan, *, root, sizes, about, say):
             copy(root / name, folder / name)
         _snakemake(folder, plan, sizes[0], seeds=1, results="warm")  # compiles, as does the next line
         _work(plan, sizes[0], 1)
+        material = plan.config["materials"][0]
         for size in sizes:
             seconds = _work(plan, size, len(plan.seeds))
             wall = _snakemake(folder, plan, size, seeds=len(plan.seeds), results=f"at_{size}")
             row = {
                 "drive": DRIVE,
-                "material": plan.config["materials"][0],
+                "material": material,
                 "size_nm": size,
                 "grains": len(plan.seeds) * len(plan.config["types"]),
-                "block_size": plan.config["block_size"],
+                "blocks": sum(len(plan.blocks((material, kind, size))) for kind in plan.config["types"]),
                 "seconds_of_work": seconds,
                 "seconds_of_pipeline": wall,
             }

@@ -235,8 +235,8 @@ def _pipeline(out):
     share = 1 - work.sum() / wall.sum()
     rows.append(["all", data["grains"].sum(), f"{work.sum():.1f}", f"{wall.sum():.1f}", f"{share:.0%}"])
     about = (
-        f"The grains of {first['material']} of all types, drive `{first['drive']}`, {first['block_size']} grains a "
-        "job: growing and spinning them up in one process, and Snakemake from nothing to their marks of disruption on "
+        f"The grains of {first['material']} of all types, drive `{first['drive']}`, in {first['blocks']} blocks a "
+        "size: growing and spinning them up in one process, and Snakemake from nothing to their marks of disruption on "
         "the same core, one call a size. The code is compiled before either. Wall time.\n"
     )
     return "\n".join(

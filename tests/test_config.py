@@ -1,5 +1,6 @@
 """The config: what is refused, with which words, and what follows from what is accepted."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,7 @@ def test_quick_is_three_of_each():
         ({"sizes_nm": [float("nan")]}, "sizes_nm[0] is nan", "finite"),
         ({"block_size": 0}, "block_size is 0", "1 or more"),
         ({"block_size": 10.0}, "block_size is 10.0", "whole number"),
+        ({"small_grains": {"up_to_nm": 200, "block_size": 0}}, "small_grains.block_size is 0", "1 or more"),
         ({"block_size": True}, "block_size is True", "whole number"),
         ({"engine": "gpu"}, "engine is 'gpu'", "cpu or cuda"),
         ({"seeds": {"number": 0}}, "seeds.number is 0", "1 or more"),
@@ -175,7 +177,18 @@ def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added(
     assert with_changes({"block_size": 100}).blocks() == ["0-29"]
 
 
+def test_small_grains_have_blocks_of_their_own():
+    changes = {"block_size": 10, "small_grains": {"up_to_nm": 200, "block_size": 20}}
+    plan = with_changes(changes)
+    assert plan.blocks(("q-S", "BA", "200")) == ["0-19", "20-29"]
+    assert plan.blocks(("q-S", "BA", "250")) == ["0-9", "10-19", "20-29"]
+    assert plan.grown_block(("q-S", "BA", "200"), "20-29") == "20-29"
+    assert re.fullmatch(plan.pattern("blocks"), "0-19") and re.fullmatch(plan.pattern("blocks"), "10-19")
+    assert with_changes(changes | {"small_grains": None}).blocks(("q-S", "BA", "200")) == ["0-9", "10-19", "20-29"]
+
+
 FEWER = {
+    "small_grains": None,
     "drives": ["prescribed", "literal"],
     "seeds": {
         "number": 12,

@@ -26,6 +26,7 @@ TINY = {
     "sizes_nm": [45, 50],
     "seeds": {"first": 0, "number": 2},
     "block_size": 2,
+    "small_grains": None,
     "spin_up": {"epsilon": None, "angular_acceleration": 4e18, "records": 20, "max_steps": 150},
     "snapshots": {"every": 5, "grains": [{"material": "q-S", "type": "BA", "size_nm": 45, "seed": 1}]},
     "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 10)},

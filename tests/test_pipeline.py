@@ -24,6 +24,7 @@ TINY = {
     "sizes_nm": [50],
     "seeds": {"first": 0, "number": 6},
     "block_size": 6,
+    "small_grains": None,
     "spin_up": {"epsilon": 0.2},
     "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
     "ensemble": {"bootstrap": 20},

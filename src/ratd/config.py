@@ -398,22 +398,28 @@ class Plan:
         Returns
         -------
         list of str
-            Such as ``"0-9"``; the last one may be shorter than `block_size`.
+            Such as ``"0-9"``; the last one may be shorter than the others.
         """
-        return self._split(self.seeds if cell is None else self.seeds_of(cell, drive))
+        return self._split(self.seeds, None) if cell is None else self._split(self.seeds_of(cell, drive), cell)
 
-    def _split(self, seeds):
-        step = self.config["block_size"]
+    def _block_size(self, cell):
+        small = self.config.get("small_grains")
+        if cell is not None and small is not None and float(cell[2]) <= small["up_to_nm"]:
+            return small["block_size"]
+        return self.config["block_size"]
+
+    def _split(self, seeds, cell):
+        step = self._block_size(cell)
         return [f"{part[0]}-{part[-1]}" for part in (seeds[k : k + step] for k in range(0, len(seeds), step))]
 
     def grown_block(self, cell, block):
         """Block of grown grains in which the grains of a block of some drive are, see `blocks`."""
         first = int(block.partition("-")[0])
         seeds = self.seeds_of(cell)
-        return self._block_with(first, seeds if first in seeds else self.seeds)
+        return self._block_with(first, seeds if first in seeds else self.seeds, cell)
 
-    def _block_with(self, seed, seeds):
-        return self._split(seeds)[(seed - self.seeds[0]) // self.config["block_size"]]
+    def _block_with(self, seed, seeds, cell):
+        return self._split(seeds, cell)[(seed - self.seeds[0]) // self._block_size(cell)]
 
     def files(self, path, drive=None):
         """Names of the files of all blocks of all cells.
@@ -489,7 +495,8 @@ class Plan:
         if name == "blocks":
             drives = (None, *self.config["drives"])
             values = {block for cell in self.cells for drive in drives for block in self.blocks(cell, drive)}
-            values = sorted(values | set(self.blocks()))
+            # a grain that only figure 1 shows is in a block of a cell with all seeds
+            values = sorted(values | {block for cell in self.cells for block in self._split(self.seeds, cell)})
         else:
             values = getattr(self, name) if name in ("sizes", "calibration_labels") else self.config[name]
         return "|".join(re.escape(value) for value in values)
@@ -524,8 +531,9 @@ class Plan:
             return []
         cells = [(own["material"], kind, size_label(size)) for kind in self.config["types"] for size in own["sizes_nm"]]
         return [
-            self.file(path, cell, seeds=self._block_with(own["seed"], seeds if own["seed"] in seeds else self.seeds))
-            for cell, seeds in ((cell, self.seeds_of(cell)) for cell in cells)
+            self.file(path, cell, seeds=self._block_with(own["seed"], seeds, cell))
+            for cell in cells
+            for seeds in [self.seeds_of(cell) if own["seed"] in self.seeds_of(cell) else self.seeds]
         ]
 
     def figure5_files(self, path, drive=None):
@@ -534,7 +542,7 @@ class Plan:
         if own is None:
             return []
         cell = _cell(own)
-        return [self.file(path, cell, seeds=self._block_with(own["seed"], self.seeds_of(cell, drive)))]
+        return [self.file(path, cell, seeds=self._block_with(own["seed"], self.seeds_of(cell, drive), cell))]
 
     @property
     def radii(self):
