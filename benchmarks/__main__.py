@@ -194,7 +194,8 @@ def _plan(paths, quick, over=None, **spin_up):
                 "spin_up": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
                 "literal": {"angular_acceleration": 1e17},
                 "snapshots": {"grains": []},
-                "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 9, 10)} | {"calibration": None},
+                "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 9, 10)}
+                | {"calibration": None, "formulae": None},
             }
             | (over or {}),
         )

@@ -114,6 +114,8 @@ def test_quick_is_three_of_each():
         ({"figures": {"figure9": {"sizes_nm": [75]}}}, "figures.figure9.sizes_nm[0] is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure9": {"T_vis_ps": [0]}}}, "figures.figure9.T_vis_ps[0] is 0", "above 0"),
         ({"figures": {"calibration": {"size_nm": 75}}}, "figures.calibration.size_nm is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"formulae": {"size_nm": 75}}}, "figures.formulae.size_nm is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"formulae": {"types": ["RA"]}}}, "figures.formulae.types[0] is 'RA'", "BA, BAM1 or BAM2"),
         ({"figures": {"calibration": {"reach": 0}}}, "figures.calibration.reach is 0", "above 0"),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),

@@ -14,6 +14,7 @@ import jsonschema
 import yaml
 
 from ratd.errors import InputError
+from ratd.formulae import DAMPING, FORMULAE
 from ratd.growth import RadiusDistribution, smallest_a_eff
 from ratd.materials import MATERIALS, Material, mix
 from ratd.parameters import ways
@@ -282,6 +283,10 @@ def check(config, schemas="config/schema"):
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
+    own = config["figures"]["formulae"]
+    if own is not None:
+        for kind in own["types"]:
+            plan.find_cell(own | {"type": kind}, "figures.formulae")
     return plan
 
 
@@ -708,6 +713,26 @@ class Plan:
                 "spin_up": {"drive": "literal"} | self.spin_up_of("literal") | pace,
                 "reach": own["reach"],
             }
+        ]
+
+    @property
+    def formulae(self):
+        """Names of the formulae that are used as printed, one at a time; empty where that is left out."""
+        return [] if self.config["figures"]["formulae"] is None else list(FORMULAE)
+
+    def formula_runs(self, formula):
+        """Settings of the runs with one formula as printed, one a type (see `ratd.variations.spin_up_ways`)."""
+        own = self.config["figures"]["formulae"]
+        first = own["seeds"]["first"]
+        pace = {"epsilon": own["epsilon"], "angular_acceleration": None, "timestep_factor": own["timestep_factor"]}
+        return [
+            {
+                "grain": self.grow(own["material"], kind, size_label(own["size_nm"])),
+                "changed": {"viscous_time": 0.0} if formula == DAMPING else {},
+                "seeds": list(range(first, first + own["seeds"]["number"])),
+                "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed") | pace,
+            }
+            for kind in own["types"]
         ]
 
     def figure(self, number, drive=None):

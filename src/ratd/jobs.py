@@ -34,6 +34,8 @@ WRITES = {
     "reproduction_data": ("fragments",),
     "parameters": ("disruption",),
     "parameter_table": ("parameters",),
+    "formulae": ("disruption",),
+    "formula_table": ("formulae",),
     "calibration_runs": ("spinup",),
     "calibration": ("calibration",),
 }

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import calibration, composition, ensemble, fragmentation, marks, pair, parameters, spinup
+from ratd import calibration, composition, ensemble, formula_table, fragmentation, marks, pair, parameters, spinup
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -307,6 +307,7 @@ KINDS = {
         "Onset of mass loss with the literal drive, and the calibrated angular acceleration",
         _entries(calibration.CALIBRATION_COLUMNS) | _over((), calibration.FIT_VALUES, nan=True),
     ),
+    "formulae": Kind("Grains spun up with single formulae as printed", _entries(formula_table.FORMULA_COLUMNS)),
     "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
 }
 """Kind of file -> its layout."""

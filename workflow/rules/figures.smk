@@ -361,3 +361,4 @@ rule figures:
             drive=PLAN.config["drives"] if 5 in PLAN.figures else [],
         ),
         rules.calibration_figure.output if CALIBRATION else [],
+        rules.formula_figure.output if FORMULAE else [],

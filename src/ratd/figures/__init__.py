@@ -10,6 +10,7 @@ from ratd.figures.figure7 import figure7
 from ratd.figures.figure8 import figure8
 from ratd.figures.figure9 import figure9
 from ratd.figures.figure10 import figure10
+from ratd.figures.formulae import formulae
 from ratd.figures.style import save
 
 __all__ = [
@@ -23,5 +24,6 @@ __all__ = [
     "figure7",
     "figure8",
     "figure9",
+    "formulae",
     "save",
 ]

@@ -1,0 +1,74 @@
+"""Grains spun up with single formulae as printed, beside the same grains in the consistent model."""
+
+import pandas as pd
+
+from ratd.formulae import FORMULAE, OWN
+from ratd.parameters import MARKS, beside_own
+from ratd.validation.statistics import median_of
+
+__all__ = ["FORMULA_COLUMNS", "formula_effects", "formula_table"]
+
+FORMULA_COLUMNS = {
+    "formula": ("", f"what is used as printed: {', '.join(FORMULAE)}"),
+    "material": ("", "material of the monomers"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "drive": ("", "what turns the grain: prescribed or literal"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "omega_disr": ("rad s-1", "angular velocity of disruption: peak of the total stress before the grain collapses"),
+    "omega_mass_75": ("rad s-1", "angular velocity at which the largest fragment has lost 25 % of the initial mass"),
+    "omega_disr_ratio": ("1", "omega_disr over that of the same grain in the consistent model"),
+    "omega_mass_75_ratio": ("1", "omega_mass_75 over that of the same grain in the consistent model"),
+}
+"""Units and meaning of the columns of `formula_table`."""
+_GRAIN = ("material", "type", "drive", "a_eff", "seed")
+
+
+def formula_table(files):
+    """Marks of all grains with every formula, and over those of the same grain in the consistent model.
+
+    Parameters
+    ----------
+    files : list of (str, list of xarray.Dataset)
+        A name of `ratd.formulae.FORMULAE`, and the marks of some grains from `ratd.disruption`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of `FORMULA_COLUMNS`; a ratio is NaN where one of the two marks is.
+
+    Raises
+    ------
+    InputError
+        If a grain was not spun up in the consistent model.
+    """
+    rows = [
+        {"formula": formula} | {name: one.attrs[name] for name in _GRAIN} | {name: float(one[name]) for name in MARKS}
+        for formula, grains in files
+        for one in grains
+    ]
+    table = pd.DataFrame(rows, columns=list(FORMULA_COLUMNS))
+    return beside_own(table, table["formula"] == OWN, "the consistent model")
+
+
+def formula_effects(table, mark):
+    """How far each printed formula moves a mark: medians over the grains of a type, and over all.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `formula_table`.
+    mark : str
+        One of `ratd.parameters.MARKS`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a formula and type (``all`` for all of them together): formula, type, and what `median_of` of
+        ratd.validation.statistics gives for the ratio to the consistent model.
+    """
+    rows = []
+    for formula, part in table[table["formula"] != OWN].groupby("formula", sort=False):
+        for kind, here in [*part.groupby("type"), ("all", part)]:
+            rows.append({"formula": formula, "type": kind} | median_of(here[f"{mark}_ratio"]))
+    return pd.DataFrame(rows)

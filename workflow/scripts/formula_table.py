@@ -1,0 +1,13 @@
+"""Tabulate grains spun up with single formulae as printed."""
+
+from ratd import io
+from ratd.formula_table import formula_table
+from ratd.jobs import Job
+
+with Job(snakemake) as job:
+    files = list(zip(job.settings["formulae"], map(io.read_marks, snakemake.input), strict=True))
+    table = formula_table(files)
+    dataset = table.rename_axis("entry").to_xarray().drop_vars("entry")
+    io.write(snakemake.output.nc, dataset.assign_attrs(job.provenance), "formulae")
+    io.write_text(snakemake.output.csv, table.to_csv(index=False, float_format="%.9g"))
+    job.log.info(f"{len(table)} runs written to {snakemake.output.nc}")
