@@ -91,6 +91,32 @@ def block_max(value, buffer):
 
 
 @device_function
+def chunk_of(n):
+    """First of those of n numbers that this thread takes where each takes some in a row, and the first that is not."""
+    chunk = (n + cuda.blockDim.x - 1) // cuda.blockDim.x
+    first = min(cuda.threadIdx.x * chunk, n)
+    return first, min(first + chunk, n)
+
+
+@device_function
+def sum_before(value, counts):
+    """Sum of one integer of each thread before this one, and of all threads.
+
+    `counts` is an integer array in shared memory with a number for each thread.
+    """
+    cuda.syncthreads()  # what was in the counts has been read
+    counts[cuda.threadIdx.x] = value
+    cuda.syncthreads()
+    before = 0
+    total = 0
+    for place in range(cuda.blockDim.x):
+        if place == cuda.threadIdx.x:
+            before = total
+        total += counts[place]
+    return before, total
+
+
+@device_function
 def prefix_sum(values, n, counts):
     """Replace values[k], k < n, by the sum of those before it.
 
@@ -99,29 +125,19 @@ def prefix_sum(values, n, counts):
     values : integer array
     n : int
     counts : integer array
-        Shared memory with a number for each thread.
+        As of `sum_before`.
 
     Returns
     -------
     int
         The sum of all.
     """
-    thread = cuda.threadIdx.x
-    chunk = (n + cuda.blockDim.x - 1) // cuda.blockDim.x
-    first = min(thread * chunk, n)
-    last = min(first + chunk, n)
-    cuda.syncthreads()
-    total = 0
+    first, last = chunk_of(n)
+    cuda.syncthreads()  # other threads may have written the values of this chunk
+    inside = 0
     for k in range(first, last):
-        total += values[k]
-    counts[thread] = total
-    cuda.syncthreads()
-    before = 0
-    total = 0
-    for place in range(cuda.blockDim.x):
-        if place == thread:
-            before = total
-        total += counts[place]
+        inside += values[k]
+    before, total = sum_before(inside, counts)
     for k in range(first, last):
         value = values[k]
         values[k] = before

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ratd.cuda.arena import RESULTS
-from ratd.cuda.block import block_max, prefix_sum
+from ratd.cuda.block import block_max, chunk_of, prefix_sum, sum_before
 from ratd.cuda.device import cuda, device_function
 from ratd.engine.advance import gap
 from ratd.engine.contacts import contact_start, contact_timestep
@@ -175,22 +175,11 @@ def find_near(body, pairs, reach, counts):
     int
         Number of pairs.
     """
-    thread = cuda.threadIdx.x
-    chunk = (pairs + cuda.blockDim.x - 1) // cuda.blockDim.x
-    first = min(thread * chunk, pairs)
-    last = min(first + chunk, pairs)
-    cuda.syncthreads()
+    first, last = chunk_of(pairs)
     found = 0
     for p in range(first, last):
         found += may_touch(body, p, reach)
-    counts[thread] = found
-    cuda.syncthreads()
-    total = 0
-    place = 0
-    for t in range(cuda.blockDim.x):
-        if t == thread:
-            place = total
-        total += counts[t]
+    place, total = sum_before(found, counts)
     for p in range(first, last):
         if may_touch(body, p, reach):
             body.near[place, 0] = body.far[p, 0]
