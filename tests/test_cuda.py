@@ -44,11 +44,23 @@ def usable():
 no_gpu = pytest.mark.skipif(usable(), reason="there is a GPU")
 
 
-def test_kernels_in_simulation():
-    """tests/simulated_cuda.py; the simulation has to be asked for before numba is imported."""
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulated_cuda.py"],
+        # killed and resumed: the same kernels once more
+        ["-p", "watched_cuda", "racing_cuda.py", "simulated_cuda.py", "-k", "not killed"],
+    ],
+    ids=["numbers", "races"],
+)
+def test_kernels_in_simulation(arguments):
+    """In a process of their own; the simulation has to be asked for before numba is imported."""
+    folder = Path(__file__).parent
+    paths = os.pathsep.join(filter(None, [str(folder), os.environ.get("PYTHONPATH")]))
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", str(Path(__file__).with_name("simulated_cuda.py"))],
-        env=os.environ | SIMULATED,
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *arguments],
+        cwd=folder,
+        env=os.environ | SIMULATED | {"PYTHONPATH": paths},
         capture_output=True,
         text=True,
         timeout=1200,

@@ -20,11 +20,32 @@ SIMULATED = bool(numba.config.ENABLE_CUDASIM)
 
 if SIMULATED:
     import sys
+    import threading
 
     from numba.cuda.simulator import kernel as simulation
 
     # Threads of the simulation wait for each other all the time; by default each turn lasts 5 ms.
     sys.setswitchinterval(1e-5)
+
+    class _Shared:
+        """`cuda.shared` of the simulation: one array for each line that asks for one, the same for a whole block.
+
+        The simulation's own takes no lock between looking the array up and making it, so that threads that come at the
+        same time get an array each (two in ten thousand launches on an idle machine, more on a busy one), and then
+        read memory that nobody has written.
+        """
+
+        _making = threading.Lock()
+
+        def array(self, shape, dtype):
+            caller = sys._getframe(1)
+            place = caller.f_code, caller.f_lineno
+            block = vars(threading.current_thread()._manager)
+            with self._making:
+                arrays = block.setdefault("shared_arrays", {})
+                if place not in arrays:
+                    arrays[place] = np.empty(shape, dtype)
+                return arrays[place]
 
     class _Cuda:
         """`numba.cuda` as the thread at work sees it.
@@ -32,6 +53,8 @@ if SIMULATED:
         The simulation puts the thread's own numbers in the place of the name `cuda` of a module while one of its
         functions runs, which goes wrong where several threads are inside several modules.
         """
+
+        shared = _Shared()
 
         def __getattr__(self, name):
             inside = simulation._kernel_context is not None

@@ -19,30 +19,36 @@ def label_pieces(body):
     """Label each monomer with the first monomer of its piece."""
     state = body.state
     label = body.label
+    parent = body.order
     thread = cuda.threadIdx.x
     n = state.counter[MONOMERS]
     cuda.syncthreads()
     for k in range(thread, n, cuda.blockDim.x):
         label[k] = k
+        parent[k] = k
     cuda.syncthreads()
     while True:
-        # All labels are roots here, monomers that are their own label. Of two that are in contact the greater one
-        # comes under the smaller; the minimum is the same in whatever order the threads come.
+        # Labels and parents are the same here, and roots: monomers that are their own parent. Of two in contact the
+        # greater root comes under the smaller; the minimum is the same in whatever order the threads come. Labels stay
+        # as they are meanwhile, and parents while the labels follow them, so that nobody reads what another writes.
         changed = 0
         for c in range(thread, state.counter[CONTACTS], cuda.blockDim.x):
             a = label[state.pair_i[c]]
             b = label[state.pair_j[c]]
             if a != b:
-                cuda.atomic.min(label, max(a, b), min(a, b))
+                cuda.atomic.min(parent, max(a, b), min(a, b))
                 changed = 1
         changed = cuda.syncthreads_or(changed)
         if not changed:
             break
         for k in range(thread, n, cuda.blockDim.x):
-            root = label[k]
-            while label[root] != root:
-                root = label[root]
+            root = parent[k]
+            while parent[root] != root:
+                root = parent[root]
             label[k] = root
+        cuda.syncthreads()
+        for k in range(thread, n, cuda.blockDim.x):
+            parent[k] = label[k]
         cuda.syncthreads()
 
 
