@@ -16,7 +16,7 @@ import xarray as xr
 
 import ratd
 from ratd import spinup
-from ratd.cuda import advance, arena, body
+from ratd.cuda import advance, arena, block, body
 from ratd.cuda import spin_up as cuda_spin_up
 from ratd.cuda.advance import PAUSED, advance_grains
 from ratd.cuda.arena import CODE, FEWEST, GOALS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive
@@ -24,7 +24,7 @@ from ratd.cuda.block import block_max, block_sum, prefix_sum
 from ratd.cuda.body import body_of
 from ratd.cuda.device import SIMULATED, cuda, kernel
 from ratd.cuda.forces import contact_pass, residual_force, sum_forces
-from ratd.cuda.fragments import drop_departed, find_fragments
+from ratd.cuda.fragments import drop_departed, find_fragments, label_pieces
 from ratd.cuda.lists import find_far, find_near, link_contacts, update_rates
 from ratd.cuda.measure import write_record
 from ratd.cuda.spin_up import record_of, spin_up_many
@@ -35,6 +35,7 @@ from ratd.engine import layout
 from ratd.engine.contacts import remove_contact, update_contact_rates
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
+from ratd.grain import connected_components
 from ratd.growth import grow
 from ratd.materials import MATERIALS, equilibrium_compression
 from ratd.neighbours import close_pairs
@@ -125,8 +126,9 @@ def block_kernel(values, sums, whole, totals):
     totals[thread] = last
 
 
-@pytest.mark.parametrize("threads", [1, 4, 7])
-def test_sums_over_a_block(threads):
+@pytest.mark.parametrize(("threads", "warp"), [(1, 2), (4, 2), (7, 2), (7, 4)])
+def test_sums_over_a_block(threads, warp, monkeypatch):
+    monkeypatch.setattr(block, "WARP", warp)
     rng = np.random.default_rng(threads)
     values = rng.normal(size=threads)
     whole = rng.integers(0, 9, size=17)
@@ -284,6 +286,26 @@ def test_lists_and_rates_are_those_of_the_processor():
     np.testing.assert_array_equal(batch.device.near[: numbers[1]], near)
     update_contact_rates(state, 0.03, True)
     assert_close(batch.state(0), state)
+
+
+@kernel
+def label_kernel(arena):
+    label_pieces(body_of(arena, cuda.blockIdx.x))
+
+
+@pytest.mark.parametrize("contacts", [5, 15, 40])
+def test_pieces_of_any_graph_are_labelled_by_their_first_monomer(contacts):
+    """Contacts in no order, which takes more than one round of joining labels."""
+    state = shaken("BA", 110e-9, 7)
+    n = state.counter[layout.MONOMERS]
+    pairs = np.random.default_rng(contacts).integers(n, size=(contacts, 2))
+    state.pair_i[:contacts], state.pair_j[:contacts] = pairs.T
+    state.counter[layout.CONTACTS] = contacts
+    batch = Batch([state], 1)
+    label_kernel[1, THREADS](batch.device)
+    piece = connected_components(n, pairs)
+    expected = [np.flatnonzero(piece == of)[0] for of in piece]
+    np.testing.assert_array_equal(batch.device.label[:n], expected)
 
 
 @kernel
