@@ -11,8 +11,8 @@ from ratd import io
 from ratd.config import load
 from ratd.errors import InputError
 from ratd.figures import formulae as figure
-from ratd.formula_table import FORMULA_COLUMNS, formula_effects, formula_table
-from ratd.formulae import FORMULAE, use
+from ratd.formula_table import FORMULA_COLUMNS, FORMULAE, formula_effects, formula_table
+from ratd.formulae import use
 
 NU = 0.17
 CONSTANTS = """

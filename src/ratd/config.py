@@ -14,7 +14,7 @@ import jsonschema
 import yaml
 
 from ratd.errors import InputError
-from ratd.formulae import DAMPING, FORMULAE
+from ratd.formula_table import DAMPING, FORMULAE
 from ratd.growth import RadiusDistribution, smallest_a_eff
 from ratd.materials import MATERIALS, Material, mix
 from ratd.parameters import ways

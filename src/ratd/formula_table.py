@@ -2,11 +2,22 @@
 
 import pandas as pd
 
-from ratd.formulae import FORMULAE, OWN
 from ratd.parameters import MARKS, beside_own
 from ratd.validation.statistics import median_of
 
-__all__ = ["FORMULA_COLUMNS", "formula_effects", "formula_table"]
+__all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table"]
+
+OWN = "consistent"
+DAMPING = "damping"
+FORMULAE = {
+    OWN: "the consistent model",
+    "sliding_stiffness": "sliding stiffness of Eq. 13 with G* = G/(2 - 2 nu^2)",
+    "sliding_limit": "zeta_c = r0 (1 - nu)/(16 pi)",
+    "twisting_stiffness": "twisting stiffness of Eq. 17 with G* = G/(2 - 2 nu^2)",
+    DAMPING: "no damping force, as in Eq. 29",
+}
+"""Name -> what is used as printed; all else is the consistent model. Those of contacts are named as in
+`ratd.laws.tangential`; without the damping the material has the viscous time 0."""
 
 FORMULA_COLUMNS = {
     "formula": ("", f"what is used as printed: {', '.join(FORMULAE)}"),
@@ -30,7 +41,7 @@ def formula_table(files):
     Parameters
     ----------
     files : list of (str, list of xarray.Dataset)
-        A name of `ratd.formulae.FORMULAE`, and the marks of some grains from `ratd.disruption`.
+        A name of `FORMULAE`, and the marks of some grains from `ratd.disruption`.
 
     Returns
     -------

@@ -15,19 +15,7 @@ import numba
 from ratd import _accelerate
 from ratd.laws import tangential
 
-__all__ = ["DAMPING", "FORMULAE", "OWN", "use"]
-
-OWN = "consistent"
-DAMPING = "damping"
-FORMULAE = {
-    OWN: "the consistent model",
-    "sliding_stiffness": "sliding stiffness of Eq. 13 with G* = G/(2 - 2 nu^2)",
-    "sliding_limit": "zeta_c = r0 (1 - nu)/(16 pi)",
-    "twisting_stiffness": "twisting stiffness of Eq. 17 with G* = G/(2 - 2 nu^2)",
-    DAMPING: "no damping force, as in Eq. 29",
-}
-"""Name -> what is used as printed; all else is the consistent model. Those of contacts are named as in
-`ratd.laws.tangential`; without the damping the material has the viscous time 0."""
+__all__ = ["use"]
 
 
 def use(formula, poisson_number):
@@ -36,7 +24,7 @@ def use(formula, poisson_number):
     Parameters
     ----------
     formula : str
-        A name of `FORMULAE`.
+        A name of `ratd.formula_table.FORMULAE`.
     poisson_number : float
         nu of the material of all grains that follow, since Eq. 17 of the model does not need it and that of the
         paper does.

@@ -5,8 +5,7 @@ from matplotlib.lines import Line2D
 
 from ratd.errors import InputError
 from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, nanometres, new_figure, plural, styled, type_style
-from ratd.formula_table import formula_effects
-from ratd.formulae import OWN
+from ratd.formula_table import OWN, formula_effects
 from ratd.parameters import MARKS
 
 TEXT = {
