@@ -29,7 +29,9 @@ TINY = {
     "small_grains": None,
     "spin_up": {"epsilon": None, "angular_acceleration": 4e18, "records": 20, "max_steps": 150},
     "snapshots": {"every": 5, "grains": [{"material": "q-S", "type": "BA", "size_nm": 45, "seed": 1}]},
-    "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 10)},
+    "figures": dict.fromkeys(
+        ["figure1", "figure4", "figure5", "figure6", "figure8", "figure9", "figure10", "calibration", "formulae"]
+    ),
 }
 
 
