@@ -309,7 +309,7 @@ def test_the_document_is_redrawn_from_its_data_alone_with_the_same_bytes(copy_of
     shutil.rmtree(copy_of.folder / "results")
     drawn = []
     for _ in range(2):
-        done = copy_of.run("--forcerun", "redraw_figure", "redraw", "--", "redraw")
+        done = copy_of.run("redraw", "--forcerun", "redraw_figure", "redraw_argument", "redraw")
         assert done.returncode == 0, done.stdout
         paths = [path for path in (copy_of.folder / "docs").rglob("*.*") if path.suffix in (".md", ".png")]
         drawn.append({path.name: path.read_bytes() for path in paths})

@@ -14,6 +14,7 @@ from ratd.bound import midplane_bound
 from ratd.config import load
 from ratd.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
 from ratd.figures import save
+from ratd.formulae import FORMULAE
 from ratd.fragmentation import FRAGMENT_COLUMNS
 from ratd.growth import grow
 from ratd.materials import MATERIALS
@@ -161,7 +162,7 @@ def test_studies_are_told_from_their_columns(folder):
     text = report(data, "reproduction")
     row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
     assert "1.120 ± " in row and "| yes |" in row
-    assert "| damping | 0.60 ± 0.1" in text and "| 0.8 | 2 |" in text
+    assert f"| {FORMULAE['damping']} | 0.60 ± 0.1" in text and "| 0.8 | 2 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 2 runs" in text
 
 
@@ -224,6 +225,12 @@ def test_collecting_again_gives_the_same_bytes_and_leaves_nothing_old(tmp_path):
     (folder / "ensemble" / "old.nc").write_text("old")
     collected(folder, tmp_path / "runs.nc")
     assert {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == first
+    # a study may come from other results than the ensemble
+    (folder / "calibration.nc").write_text("a study")
+    collected(folder, tmp_path / "runs.nc")
+    assert (folder / "calibration.nc").read_text() == "a study" and "`calibration.nc`" in (
+        folder / "README.md"
+    ).read_text()
 
 
 def test_a_folder_without_config_has_nothing_to_draw(tmp_path):

@@ -1,7 +1,7 @@
 # The reproduction document: its data, collected from the results of the config in use, and what is drawn from them.
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
-from ratd.reproduction.data import CALIBRATION, FOLDER, FORMULAE, PARAMETERS, Data
+from ratd.reproduction.data import FOLDER, FROM_RESULTS, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -39,17 +39,13 @@ rule reproduction_data:
         # what there is of studies and validation, which are not computed for this
         settings=lambda w: {
             "config": PLAN.config,
-            "studies": [
-                path
-                for path in (
-                    f"{PLAN.results}/{CALIBRATION}",
-                    f"{PLAN.results}/{FORMULAE}",
-                    *expand(
-                        f"{PLAN.results}/{PARAMETERS}", drive=PLAN.config["drives"]
-                    ),
-                )
+            "studies": {
+                name.format(drive=drive): path
+                for drive in PLAN.config["drives"]
+                for below, name in FROM_RESULTS.items()
+                for path in [f"{PLAN.results}/{below.format(drive=drive)}"]
                 if Path(path).is_file()
-            ],
+            },
             "validation": CHECKS.existing(CHECKS.docs, ["lammps", "literal"]),
             "command": "snakemake --cores 2 reproduction_data --configfile CONFIG",
         },

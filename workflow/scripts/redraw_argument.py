@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ratd.figures import save
+from ratd.figures import calibration, formulae, save
 from ratd.jobs import Job
 from ratd.reproduction import figures
 from ratd.reproduction.data import Data
@@ -13,6 +13,8 @@ with Job(snakemake) as job:
     draw = {
         "bound": lambda: figures.bound(data.tables, data.plan.materials),
         "fragments": lambda: figures.fragments(data.fragments),
+        "calibration": lambda: calibration(data.calibration.to_dataframe(), data.calibration),
+        "formulae": lambda: formulae(data.formulae),
         "lammps": lambda: lammps.draw(data.study("lammps")),
         "literal": lambda: literal.draw(data.study("literal")),
     }

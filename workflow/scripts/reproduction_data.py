@@ -20,8 +20,7 @@ with Job(snakemake) as job:
         collection.copy(path, f"pairs/{Path(path).name}", f"pairs of Fig. 10, {Path(path).stem}")
     if files.grains:
         collection.grains(files.grains, settings["config"]["figures"]["figure1"]["seed"])
-    for path in settings["studies"]:
-        name = str(Path(path).relative_to(settings["config"]["results"]))
+    for name, path in settings["studies"].items():
         collection.copy(path, name, "a study of the reproduction")
     for check in (lammps, literal):
         name = check.KIND.removeprefix("validation_")

@@ -4,6 +4,7 @@ import numpy as np
 
 from ratd.beyond import SPLIT
 from ratd.figures.style import plural
+from ratd.formulae import FORMULAE, OWN
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
@@ -177,19 +178,18 @@ def formula_section(data):
     if table is None:
         parts.append("The study of the printed formulae of the contacts, one at a time, is not part of the data.")
     else:
-        own = table["formula"] == "consistent"
+        own = table["formula"] == OWN
         rows = []
         for name, part in table[~own].groupby("formula", sort=False):
-            cells = [name]
+            cells = [FORMULAE.get(name, name)]
             for mark in ("omega_disr", "omega_mass_75"):
                 found = median_of(part[f"{mark}_ratio"])
                 cells.append(with_error(found["median"], found["error"]))
             rows.append([*cells, str(len(part))])
         parts.append(
             f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
-            "printed and all else as in the consistent model; ratios to the same grain in the consistent model, "
-            "medians: sliding_stiffness and twisting_stiffness with G* = G/(2 - 2 nu²) in Eqs. 13 and 17, "
-            "sliding_limit with zeta_c = r0 (1 - nu)/(16 pi), damping without that force, which Eq. 29 leaves out."
+            "printed and all else as in the consistent model. Medians of the ratio to the same grain in the consistent "
+            "model:"
         )
         parts.append(markdown_table(["formula as printed", "omega_disr", "omega at 25 % mass loss", "runs"], rows))
     grains = max(data.tables.values(), key=len)

@@ -98,9 +98,17 @@ class Collection:
         io.write(self._new(name, what), joined.assign_attrs(self.provenance), kind)
 
     def finish(self, command):
-        """Remove data of an earlier collection, and write the README of the folder."""
-        for path in self.folder.rglob("*.nc"):
-            if str(path.relative_to(self.folder)) not in self.written:
+        """Remove data of an earlier collection, and write the README of the folder.
+
+        Studies and checks of the validation stay: they may come from other results than the ensemble.
+        """
+        for path in sorted(self.folder.rglob("*.nc")):
+            name = str(path.relative_to(self.folder))
+            if name in self.written:
+                continue
+            if path.parent == self.folder or path.parent.name == "validation":
+                self.written[name] = "as it was before this collection"
+            else:
                 path.unlink()
         rows = [
             [f"`{name}`", what, f"{(self.folder / name).stat().st_size / 1e3:.1f}", file_hash(self.folder / name)]

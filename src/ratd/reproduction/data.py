@@ -15,9 +15,15 @@ from ratd.fragmentation import fragment_table
 
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
-PARAMETERS = "parameters/{drive}.nc"
-CALIBRATION = "calibration/fit.nc"
-FORMULAE = "formulae/table.nc"
+PARAMETERS = "parameters_{drive}.nc"
+CALIBRATION = "calibration.nc"
+FORMULAE = "formulae.nc"
+FROM_RESULTS = {
+    "parameters/{drive}.nc": PARAMETERS,
+    "calibration/fit.nc": CALIBRATION,
+    "formulae/table.nc": FORMULAE,
+}
+"""File of a study below the results -> its name here. A study may have been made with another config."""
 STUDIES = ("lammps", "literal")
 """Checks of the validation that the document takes numbers from."""
 DRIVEN_FIGURES = {
@@ -104,7 +110,10 @@ class Data:
         names = ["bound"] if self.drives else []
         if any(self.has(f"fragments/{drive}.nc") for drive in self.drives):
             names.append("fragments")
-        return names + [name for name in STUDIES if self.drives and self.has(f"validation/{name}.nc")]
+        if not self.drives:
+            return names
+        names += [name for name in ("calibration", "formulae") if self.has(f"{name}.nc")]
+        return names + [name for name in STUDIES if self.has(f"validation/{name}.nc")]
 
     def _each_drive(self, name, read):
         return {drive: read(self.path(name.format(drive=drive))) for drive in self.drives

@@ -68,7 +68,7 @@ def _of_cell(data):
         drive: table[
             (table["material"] == own["material"])
             & (table["type"] == own["type"])
-            & np.isclose(table["a_eff"], own["size_nm"] * NM, rtol=1e-6)
+            & np.isclose(table["a_eff"], own["size_nm"] * NM, rtol=1e-6, atol=0)
         ]
         for drive, table in data.tables.items()
     }
@@ -140,7 +140,7 @@ def _shapes(data):
     def oblate(when, judge, size=None, types=None):
         def evaluate(table, printed):
             if size is not None:
-                table = table[np.isclose(table["a_eff"], size * NM, rtol=1e-6)]
+                table = table[np.isclose(table["a_eff"], size * NM, rtol=1e-6, atol=0)]
             if types is not None:
                 table = table[table["type"].isin(types)]
             if not len(table):

@@ -181,8 +181,10 @@ def _argument(data, pictures):
         *picture("literal"),
         "### One free number of the literal drive",
         argument.calibration_section(data),
+        *picture("calibration"),
         "### Each printed formula alone",
         argument.formula_section(data),
+        *picture("formulae"),
     ]
 
 
