@@ -10,11 +10,12 @@ from pathlib import Path
 import pandas as pd
 
 from ratd import io
-from ratd.config import check, read_yaml
+from ratd.config import Plan, read_materials, read_yaml
 from ratd.fragmentation import fragment_table
 
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
+MATERIALS_SCHEMA = "config/schema/materials.schema.yaml"
 PARAMETERS = "parameters_{drive}.nc"
 CALIBRATION = "calibration.nc"
 FORMULAE = "formulae.nc"
@@ -68,8 +69,12 @@ class Data:
 
     @cached_property
     def plan(self):
-        """`ratd.config.Plan` of the config that the data were made with."""
-        return check(read_yaml(self.path(CONFIG)))
+        """`ratd.config.Plan` of the config that the data were made with.
+
+        It was checked then, and is not now: keys that came later do not matter for what is drawn.
+        """
+        config = read_yaml(self.path(CONFIG))
+        return Plan(config, read_materials(config["materials_file"], read_yaml(MATERIALS_SCHEMA)))
 
     @property
     def drives(self):

@@ -262,8 +262,10 @@ def _parameters(data):
         return None if not np.isfinite(error) else bool(abs(value - 1.0) < max(2 * error, 0.02))
 
     def raised(value, error):
-        printed = PRINTED["viscous"].value
-        return None if not np.isfinite(error) else bool(abs(value - printed) < 2 * error)
+        if not np.isfinite(error):
+            return None
+        as_printed, none = (abs(value - level) < 2 * error for level in (PRINTED["viscous"].value, 1.0))
+        return None if as_printed and none else bool(as_printed)
 
     def last(column, kinds, holds):
         def evaluate(table, printed):
