@@ -130,12 +130,12 @@ def test_values_with_errors_and_ranges_as_text():
 
 
 def test_rows_stand_in_the_order_of_the_paper_with_what_is_missing_named():
-    rows = [Row("pairs", {"prescribed": Answer("1 %", "0.5")}, "because")]
+    rows = [Row("pairs", {"prescribed": Answer("1 %", "0.5", True)}, "because")]
     rows.append(Row("mean_radius", {"": Answer("30 nm", "1.5")}))
     lines = row_table(rows, ["prescribed", "literal"]).splitlines()[2:]
     first, second = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    assert first[2:] == ["20 nm", "30 nm", "1.5", "(same)", "–", ""]
-    assert second[3:] == ["1 %", "0.5", "no data", "–", "because"]
+    assert first[2:] == ["20 nm", "30 nm", "1.5", "–", "(same)", "–", "–", ""]
+    assert second[3:] == ["1 %", "0.5", "yes", "no data", "–", "–", "because"]
 
 
 def test_porosity_of_a_solid_sphere_with_eq_3_as_printed():
@@ -162,7 +162,7 @@ def test_studies_are_told_from_their_columns(folder):
     text = report(data, "reproduction")
     row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
     assert "1.120 ± " in row and "| yes |" in row
-    assert f"| {FORMULAE['damping']} | 0.60 ± 0.1" in text and "| 0.8 | 2 |" in text
+    assert f"| {FORMULAE['damping']} | 0.600 ± 0.071 | 0.8 | 2 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 2 runs" in text
 
 
