@@ -14,7 +14,7 @@ from ratd.bound import midplane_bound
 from ratd.config import load
 from ratd.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
 from ratd.figures import save
-from ratd.formulae import FORMULAE
+from ratd.formula_table import FORMULAE
 from ratd.fragmentation import FRAGMENT_COLUMNS
 from ratd.growth import grow
 from ratd.materials import MATERIALS

@@ -4,7 +4,7 @@ import numpy as np
 
 from ratd.beyond import SPLIT
 from ratd.figures.style import plural
-from ratd.formulae import FORMULAE, OWN
+from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
