@@ -14,6 +14,7 @@ from ratd.ensemble import (
     grain_table,
     radius_of_reading,
     sort_cells,
+    spin_share,
     table3,
     table3_dataset,
     table_dataset,
@@ -360,3 +361,10 @@ def test_tables_as_datasets_survive_netcdf(tmp_path, table, fit):
     assert cells["omega_disr_mean"].attrs["units"] == "rad s-1"
     assert cells["omega_disr_count"].attrs["units"] == "1"
     assert cells["n_contacts_maximum"].attrs["long_name"] == "maximum of: number of contacts"
+
+
+def test_share_of_the_spins_of_two_equal_spheres():
+    # each 2/5 m a^2 of its own, and m a^2 for its way around the middle
+    a, density = 30e-9, 2000.0
+    mass = 4 / 3 * np.pi * density * a**3
+    assert spin_share([a, a], density, 2 * (0.4 + 1.0) * mass * a**2) == pytest.approx(0.8 / 2.8)

@@ -38,6 +38,8 @@ def test_grains_come_back_bit_for_bit(tmp_path):
     for old, new in zip(written, read, strict=True):
         assert np.array_equal(old.position, new.position) and np.array_equal(old.radius, new.radius)
         assert (old.material, old.type, old.seed, old.a_eff) == (new.material, new.type, new.seed, new.a_eff)
+    columns = grain_table(io.read_grain_columns(tmp_path / "grains.nc"))["spin_share"]
+    np.testing.assert_allclose(columns, grain_table(written)["spin_share"], rtol=1e-12)
 
 
 def test_a_material_of_the_user_comes_back(tmp_path):

@@ -19,7 +19,7 @@ from ratd.fragmentation import FRAGMENT_COLUMNS
 from ratd.growth import grow
 from ratd.materials import MATERIALS
 from ratd.reproduction import figures
-from ratd.reproduction.argument import printed_porosity
+from ratd.reproduction.argument import printed_porosity, solid_parts, solid_prediction
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.collect import Collection
 from ratd.reproduction.data import Data
@@ -27,6 +27,7 @@ from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
 from ratd.shape import porosity, semi_axes
+from ratd.validation.literal import solid_omega
 from synthetic_runs import make_table
 
 ROOT = Path(__file__).parents[1]
@@ -69,6 +70,29 @@ def text(folder):
 @pytest.fixture(autouse=True)
 def in_root(monkeypatch):
     monkeypatch.chdir(ROOT)
+
+
+def test_literal_omega_is_predicted_from_the_consistent_one():
+    table = pd.DataFrame(
+        {"omega_disr": [1e8, 1e8, np.nan], "spin_share": [0.05, np.nan, 0.05], "literal_step": [2e-13, 2e-13, 2e-13]}
+    )
+    found = solid_prediction(table, 1e15)
+    assert found[0] == solid_omega(1e8, 0.05, 1e15, 2e-13)[0] and np.isnan(found[1:]).all()
+    # a threshold far below the scale of rate and step: the fourth root
+    scale = (1e15 / 2e-13) ** (1 / 3)
+    tiny = solid_prediction(table.assign(omega_disr=1e-4 * scale, spin_share=1e-9), 1e15)[0]
+    assert tiny == pytest.approx((4 * 1e-4) ** 0.25 * scale, rel=0.1)
+
+
+def test_calibrated_drive_is_set_beside_table_3_for_every_type(folder):
+    data = Data(str(folder))
+    for name, table in data.tables.items():
+        data.tables[name] = table.assign(spin_share=0.05, timestep=1e-12)
+    data.__dict__["calibration"] = {"calibrated": xr.DataArray(3e13)}
+    text = "\n\n".join(solid_parts(data))
+    assert "3.00e13 rad/s²" in text and ("both drives have here" in text) == ("literal" in data.tables)
+    for kind in ("BA", "BAM1", "BAM2"):
+        assert f"| a-C | {kind} | 200–500 nm |" in text
 
 
 def test_every_printed_value_is_used_once_in_the_document(text):

@@ -51,11 +51,13 @@ GRAIN_COLUMNS = {
     "axis_b": ("m", "middle semi-axis as grown (Eq. 5)"),
     "axis_c": ("m", "longest semi-axis as grown (Eq. 6)"),
     "cut_bound": ("rad s-1", "angular velocity at which the weakest cut through the contacts gives way"),
+    "spin_share": ("1", "share of the monomers' own moments of inertia in I_1"),
 }
 """Units and meaning of what is known before the spin-up."""
 RUN_COLUMNS = {
     "drive": ("", "what turns the grain: prescribed, literal or torque"),
     "steps": ("1", "time steps of the spin-up"),
+    "timestep": ("s", "first time step of the spin-up"),
     "end_reason": ("", "why the spin-up ended"),
     "missing_marks": ("", "marks that the run does not contain, with the reason"),
 }
@@ -106,6 +108,26 @@ def eq33(a_eff, surface_energy, density, mean_monomer_radius, n_contacts, fillin
     """
     scale = np.sqrt(surface_energy / (density * np.asarray(mean_monomer_radius))) / np.asarray(a_eff)
     return A * scale * (np.asarray(n_contacts) * np.asarray(filling_factor)) ** alpha
+
+
+def spin_share(radius, density, moment_1):
+    """Share of the monomers' own moments of inertia in that of the whole, I_spin/(I_orbit + I_spin).
+
+    Parameters
+    ----------
+    radius : array_like, shape (n,)
+        Radii of the monomers [m].
+    density : float
+        [kg m-3].
+    moment_1 : float
+        Greatest moment of inertia I_1 of the grain, that of the monomers included [kg m2].
+
+    Returns
+    -------
+    float
+        sum(2/5 m_i a_i^2)/I_1 (docs/model.md, The two drives).
+    """
+    return float(np.sum(8.0 / 15.0 * np.pi * density * np.asarray(radius) ** 5) / moment_1)
 
 
 def grain_table(grains=None, marks=None):
@@ -491,6 +513,7 @@ def _grown(grain):
         "axis_a": shape.a,
         "axis_b": shape.b,
         "axis_c": shape.c,
+        "spin_share": spin_share(grain.radius, grain.material.density, shape.moments[0]),
         **_of_monomers(grain.radius),
     }
 

@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from ratd import schema
+from ratd.ensemble import spin_share
 from ratd.errors import FileError, InputError
 from ratd.grain import Grain
 from ratd.materials import Material
@@ -563,8 +564,17 @@ def read_marks(path):
 
 
 def read_grain_columns(path):
-    """What a file of grains says of each, without its monomers: list of datasets of scalars, with material and type."""
-    return [row.drop_dims("monomer") for row in rows(read(path, "grains"), "grains")]
+    """What a file of grains says of each, without its monomers: list of datasets of scalars, with material and type.
+
+    The share of the monomers in the moment of inertia, `ratd.ensemble.spin_share`, is added: it needs their radii.
+    """
+    file = read(path, "grains")
+    return [
+        row.drop_dims("monomer").assign(
+            spin_share=spin_share(row["radius"].values, file["density"].item(), row["moment_1"].item())
+        )
+        for row in rows(file, "grains")
+    ]
 
 
 def read_table(path):

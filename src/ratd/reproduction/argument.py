@@ -9,6 +9,7 @@ from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
 from ratd.units import NM
+from ratd.validation.literal import solid_omega
 from ratd.validation.show import lammps, literal
 from ratd.validation.statistics import median_of
 
@@ -133,6 +134,7 @@ def calibration_section(data):
             f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
             f"{plural(int(found.sizes['entry']), 'run')}. This is the one place where anything was fitted to the paper."
         )
+    parts += solid_parts(data)
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
@@ -151,6 +153,86 @@ def calibration_section(data):
             rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
         parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
     return "\n\n".join(parts)
+
+
+def solid_parts(data):
+    """What the literal drive would do at the calibrated rate, from the grains of the drive `prescribed`; paragraphs."""
+    if data.calibration is None or "prescribed" not in data.tables:
+        return []
+    laws = {drive: data.plan.spin_up_of(drive) for drive in ("prescribed", "literal")}
+    to_literal = laws["literal"]["timestep_factor"] / laws["prescribed"]["timestep_factor"]
+    table = data.tables["prescribed"]
+    table = table.assign(literal_step=table["timestep"] * to_literal)
+    calibrated = data.calibration["calibrated"].item()
+    parts = [
+        "What the literal drive gives at another rate needs no run: a solid grain under the printed equations turns "
+        "with Omega in the inertial frame, d Omega/dt = s d omega/dt - (1 - s) omega (omega - Omega)² dt, where s is "
+        "the share of the monomers' own moments of inertia, and parts where |Omega| is the omega_disr of the drive "
+        "`prescribed` for the same grain (docs/validation.md, The literal drive)."
+    ]
+    rate = laws["literal"]["angular_acceleration"]
+    if "literal" in data.tables and rate is not None:
+        key = ["material", "type", "seed", "nm"]
+        literal_runs = data.tables["literal"].assign(nm=_whole_nm)[[*key, "omega_disr"]]
+        both = table.assign(nm=_whole_nm).merge(literal_runs, on=key, suffixes=("", "_literal"))
+        ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
+        parts[0] += (
+            f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
+            f"of the run lies at {with_error(ratio['median'], ratio['error'])} times that "
+            f"({between(ratio['low'], ratio['high'])} for the middle two thirds)."
+        )
+    table = table.assign(omega_disr=solid_prediction(table, calibrated))
+    table = ratios(table, data.plan.materials)
+    parts.append(
+        f"At the calibrated {number(calibrated)} rad/s² and f = {laws['literal']['timestep_factor']:g} it gives, for "
+        "all grains of the drive `prescribed`:"
+    )
+    rows = []
+    for name, part in table.groupby("material", sort=False):
+        for kind, own in part.groupby("type", sort=False):
+            slope, error = _slope(own)
+            sizes = f"{own['a_eff'].min() / NM:g}–{own['a_eff'].max() / NM:g} nm"
+            printed, _ = _slope(own.assign(omega_disr=table3_omega(own, data.plan.materials)))
+            rows.append(
+                [name, kind, sizes, _range(1 / own["printed_over_found"]), with_error(slope, error), number(printed)]
+            )
+        printed = part.assign(printed=table3_omega(part, data.plan.materials))
+        rows.append([name, "order", "", f"{_order(part, 'omega_disr')}; Table 3: {_order(printed, 'printed')}", "", ""])
+    head = ["material", "type", "sizes", "omega over Table 3", "d ln omega/d ln a_eff", "of Table 3"]
+    parts.append(markdown_table(head, rows))
+    return parts
+
+
+def solid_prediction(table, acceleration):
+    """omega at which solid grains part under the printed equations, from their omega_disr of the consistent model.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Grains with omega_disr [rad/s] of the drive `prescribed`, spin_share, and literal_step [s], the time step of the
+        drive `literal`.
+    acceleration : float
+        d omega/dt [rad/s2].
+
+    Returns
+    -------
+    numpy.ndarray
+        See `ratd.validation.literal.solid_omega`; NaN where something is not known.
+    """
+    columns = table[["omega_disr", "spin_share", "literal_step"]].to_numpy(float)
+    return np.array(
+        [solid_omega(own[0], own[1], acceleration, own[2])[0] if np.isfinite(own).all() else np.nan for own in columns]
+    )
+
+
+def _slope(table):
+    """Slope of ln omega_disr against ln a_eff, and its standard error."""
+    known = table[table["omega_disr"].notna()]
+    x, y = np.log(known["a_eff"].to_numpy(float)), np.log(known["omega_disr"].to_numpy(float))
+    if len(x) < 3 or np.ptp(x) < 1e-6:
+        return np.nan, np.nan
+    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
+    return float(slope), float(np.sqrt(covariance[0, 0]))
 
 
 def _rate(law):

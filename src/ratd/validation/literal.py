@@ -9,9 +9,10 @@ the aggregate backwards. `solid_omega` says where a solid grain parts under both
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from ratd import ensemble
 from ratd.growth import grow
 from ratd.marks import disruption
-from ratd.shape import inertia_tensor, principal_axes
+from ratd.shape import principal_axes
 from ratd.spinup import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -34,17 +35,14 @@ REFERENCE = {"epsilon": 0.02, "timestep_factor": 0.05}
 """Run of the consistent drive that the others are compared with."""
 EXPLICIT_END, EXACT_END = 1.25, 3.0
 """Runs go on to so many times the omega at which a solid grain parts."""
-
-
 SOLID_END = 2.5
 """omega/q (1 - share)^(2/3) by which Omega of `solid_omega` has grown without end, which it does at 1.515."""
 
 
 def spin_share(grain):
-    """I_spin/(I_orbit + I_spin) of a grain about its axis a_1: sum of 2/5 m_i a_i^2 over the moment of inertia I_1."""
+    """`ratd.ensemble.spin_share` of a grain about its axis a_1."""
     moments, _ = principal_axes(grain.position, grain.mass, grain.radius)
-    own = inertia_tensor(np.zeros_like(grain.position), grain.mass, grain.radius)[0, 0]
-    return float(own / moments[0])
+    return ensemble.spin_share(grain.radius, grain.material.density, moments[0])
 
 
 def solid_omega(threshold, share, acceleration, timestep):
