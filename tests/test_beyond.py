@@ -104,7 +104,7 @@ def test_one_side_without_sizes_has_no_slope():
 def test_binomial_intervals_of_wilson():
     assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
     assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
-    assert binomial_interval(10, 10)[1] == 1.0
+    assert binomial_interval(10, 10)[1] == 1.0 and binomial_interval(0, 10)[0] == 0.0
     assert np.isnan(binomial_interval(0, 0)).all()
 
 

@@ -189,7 +189,8 @@ def binomial_interval(k, n, confidence=0.95):
     p = k / n
     centre = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return max(0.0, centre - half), min(1.0, centre + half)
+    # exact at both ends, where the difference is left with rounding
+    return 0.0 if k == 0 else centre - half, 1.0 if k == n else centre + half
 
 
 def oblate_counts(table, by=("type",), confidence=0.95):

@@ -33,7 +33,7 @@ def bound_section(data):
             if not len(part):
                 continue
             printed = part["printed_over_bound"]
-            cells = [kind, f"{part['a_eff'].min() / NM:g}–{part['a_eff'].max() / NM:g} nm", str(len(part))]
+            cells = [kind, _sizes(part), str(len(part))]
             cells += [_range(printed), _range(printed**2), _range(part["strength_over_bound"])]
             for table in tables.values():
                 sizes = table["a_eff"].between(part["a_eff"].min() * (1 - 1e-9), part["a_eff"].max() * (1 + 1e-9))
@@ -58,6 +58,12 @@ def bound_section(data):
             markdown_table(head, rows),
         ]
     )
+
+
+def _sizes(table):
+    """Such as "50–200 nm", or "350 nm"."""
+    ends = dict.fromkeys(f"{end / NM:g}" for end in (table["a_eff"].min(), table["a_eff"].max()))
+    return f"{'–'.join(ends)} nm"
 
 
 def _range(values):
@@ -157,41 +163,36 @@ def calibration_section(data):
 
 def solid_parts(data):
     """What the literal drive would do at the calibrated rate, from the grains of the drive `prescribed`; paragraphs."""
-    if data.calibration is None or "prescribed" not in data.tables:
+    table = calibrated_grains(data)
+    if table is None:
         return []
-    laws = {drive: data.plan.spin_up_of(drive) for drive in ("prescribed", "literal")}
-    to_literal = laws["literal"]["timestep_factor"] / laws["prescribed"]["timestep_factor"]
-    table = data.tables["prescribed"]
-    table = table.assign(literal_step=table["timestep"] * to_literal)
-    calibrated = data.calibration["calibrated"].item()
+    law = data.plan.spin_up_of("literal")
     parts = [
         "What the literal drive gives at another rate needs no run: a solid grain under the printed equations turns "
         "with Omega in the inertial frame, d Omega/dt = s d omega/dt - (1 - s) omega (omega - Omega)² dt, where s is "
         "the share of the monomers' own moments of inertia, and parts where |Omega| is the omega_disr of the drive "
         "`prescribed` for the same grain (docs/validation.md, The literal drive)."
     ]
-    rate = laws["literal"]["angular_acceleration"]
+    rate = law["angular_acceleration"]
     if "literal" in data.tables and rate is not None:
         key = ["material", "type", "seed", "nm"]
         literal_runs = data.tables["literal"].assign(nm=_whole_nm)[[*key, "omega_disr"]]
-        both = table.assign(nm=_whole_nm).merge(literal_runs, on=key, suffixes=("", "_literal"))
+        both = with_literal_step(data).assign(nm=_whole_nm).merge(literal_runs, on=key, suffixes=("", "_literal"))
         ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
         parts[0] += (
             f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
             f"of the run lies at {with_error(ratio['median'], ratio['error'])} times that "
             f"({between(ratio['low'], ratio['high'])} for the middle two thirds)."
         )
-    table = table.assign(omega_disr=solid_prediction(table, calibrated))
-    table = ratios(table, data.plan.materials)
     parts.append(
-        f"At the calibrated {number(calibrated)} rad/s² and f = {laws['literal']['timestep_factor']:g} it gives, for "
-        "all grains of the drive `prescribed`:"
+        f"At the calibrated {number(data.calibration['calibrated'].item())} rad/s² and f = {law['timestep_factor']:g} "
+        "it gives, for all grains of the drive `prescribed`:"
     )
     rows = []
     for name, part in table.groupby("material", sort=False):
         for kind, own in part.groupby("type", sort=False):
             slope, error = _slope(own)
-            sizes = f"{own['a_eff'].min() / NM:g}–{own['a_eff'].max() / NM:g} nm"
+            sizes = _sizes(own)
             printed, _ = _slope(own.assign(omega_disr=table3_omega(own, data.plan.materials)))
             rows.append(
                 [name, kind, sizes, _range(1 / own["printed_over_found"]), with_error(slope, error), number(printed)]
@@ -201,6 +202,32 @@ def solid_parts(data):
     head = ["material", "type", "sizes", "omega over Table 3", "d ln omega/d ln a_eff", "of Table 3"]
     parts.append(markdown_table(head, rows))
     return parts
+
+
+def with_literal_step(data):
+    """Table of the grains of the drive `prescribed`, with literal_step, the time step of the drive `literal` [s]."""
+    factor = {drive: data.plan.spin_up_of(drive)["timestep_factor"] for drive in ("prescribed", "literal")}
+    table = data.tables["prescribed"]
+    return table.assign(literal_step=table["timestep"] * factor["literal"] / factor["prescribed"])
+
+
+def calibrated_grains(data):
+    """Grains of the drive `prescribed` with the omega_disr that the calibrated drive `literal` would give them.
+
+    Parameters
+    ----------
+    data : ratd.reproduction.data.Data
+
+    Returns
+    -------
+    pandas.DataFrame or None
+        As from `ratd.reproduction.bounds.ratios`; None where the data hold no calibration or no such grains.
+    """
+    if data.calibration is None or "prescribed" not in data.tables:
+        return None
+    table = with_literal_step(data)
+    omega = solid_prediction(table, data.calibration["calibrated"].item())
+    return ratios(table.assign(omega_disr=omega), data.plan.materials)
 
 
 def solid_prediction(table, acceleration):

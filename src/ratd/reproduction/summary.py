@@ -6,6 +6,7 @@ from ratd.beyond import cross_validation, slopes
 from ratd.composition import table1, table2
 from ratd.figures.style import plural
 from ratd.reproduction import grown
+from ratd.reproduction.argument import calibrated_grains
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.text import between, number, with_error
 from ratd.validation.show import lammps
@@ -27,7 +28,14 @@ def summary(data, rows):
     """
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
     lines = [_verdict(drive, rows) for drive in tables]
-    lines += [_level(drive, table) for drive, table in tables.items()]
+    lines += [_level(f"omega_disr, drive `{drive}`", table) for drive, table in tables.items()]
+    calibrated = calibrated_grains(data)
+    if calibrated is not None and calibrated["printed_over_found"].notna().any():
+        name = (
+            "Drive `literal` with its one free number fixed on the onset of mass loss in Fig. 4, predicted for a solid "
+            "grain from the drive `prescribed`"
+        )
+        lines.append(_level(name, calibrated))
     lines += [_bound(max(tables.values(), key=len)), *_lammps(data)]
     lines += [line for drive, table in tables.items() for line in _shape_of_law(drive, table, data.plan.materials)]
     lines += [_composition(), *_grains(data)]
@@ -43,7 +51,7 @@ def _verdict(drive, rows):
     )
 
 
-def _level(drive, table):
+def _level(name, table):
     """omega_disr over Eq. 33 with the printed Table 3."""
     found = median_of(1 / table["printed_over_found"])
     by_type = [
@@ -51,7 +59,7 @@ def _level(drive, table):
         for kind, part in table.groupby("type", sort=False)
     ]
     return (
-        f"**omega_disr, drive `{drive}`**: {with_error(found['median'], found['error'])} times Eq. 33 with the printed "
+        f"**{name}**: {with_error(found['median'], found['error'])} times Eq. 33 with the printed "
         f"Table 3, in the median of {plural(found['n'], 'grain')} ({', '.join(by_type)}); middle two thirds "
         f"{between(found['low'], found['high'])}."
     )
