@@ -186,6 +186,10 @@ def test_studies_are_told_from_their_columns(folder):
     text = report(data, "reproduction")
     row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
     assert "1.120 ± " in row and "| yes |" in row
+    # an error that allows both the printed effect and none leaves it open
+    grains["omega_disr_ratio"] = [1.0, 0.9, 1.05, 1.2]
+    open_row = next(line for line in report(data, "reproduction").splitlines() if "T_vis = 9 ps over" in line)
+    assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
     assert f"| {FORMULAE['damping']} | 0.600 ± 0.07" in text and "| 0.8 | 2 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 2 runs" in text
 

@@ -1,5 +1,7 @@
 """Rows of the spin-up: the course of a disruption, shapes, omega_disr, pairs."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ratd.beyond import binomial_interval, oblate_counts, slopes
@@ -56,7 +58,9 @@ def _median(values, printed, factor=NEAR, holds=None):
     if not found["n"]:
         return None
     value, error = found["median"], found["error"]
-    return answer(value, error, printed, factor, None if holds is None else holds(value, error))
+    own = answer(value, error, printed, factor)
+    # what `holds` leaves open stays open, however near the value is
+    return own if holds is None else replace(own, holds=holds(value, error))
 
 
 def _of_cell(data):
