@@ -93,8 +93,8 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
 
 
 def _settings(plan, drive, cell, coarse):
-    spin = plan.spin_up_of(drive)
     material, kind, size = cell
+    spin = plan.spin_up_of(drive, kind)
     return {
         "drive": drive,
         "material": material,
@@ -119,9 +119,9 @@ def grain_of(plan, cell, seed):
     )  # fmt: skip
 
 
-def arguments_of(plan, drive, coarse):
-    """Arguments of `ratd.spin_up` for a run `coarse` times as fast as the config says."""
-    spin = plan.spin_up_of(drive)
+def arguments_of(plan, drive, kind, coarse):
+    """Arguments of `ratd.spin_up` for a run of a grain of some type `coarse` times as fast as the config says."""
+    spin = plan.spin_up_of(drive, kind)
     arguments = {
         "drive": drive,
         "timestep_factor": spin["timestep_factor"],
@@ -136,12 +136,12 @@ def _compile(plan, drives):
     """Run something small, so that no row holds the time that compiling takes."""
     grain = grow("BAM2", 60 * NM, "q-S", 0)
     for drive in drives:
-        spin_up(grain, max_steps=1000, **arguments_of(plan, drive, 1000))
+        spin_up(grain, max_steps=1000, **arguments_of(plan, drive, grain.type, 1000))
 
 
 def _run(plan, drive, cell, coarse, say):
     """The first grain of a cell that comes to rest, spun up `coarse` times as fast; processor times [s]."""
-    arguments = arguments_of(plan, drive, coarse)
+    arguments = arguments_of(plan, drive, cell[1], coarse)
     for seed in plan.seeds:
         start = time.process_time()
         grain = grain_of(plan, cell, seed)
@@ -290,7 +290,6 @@ def paper(cells, rows, plan, drives, coarse, about):
         own = [cell for cell in cells if cell["drive"] == drive]
         table = ratios(rows, plan, drive, coarse[drive])
         logs = np.log(table[:, 0] / table[:, 2]) if len(table) else np.empty(0)
-        spin = plan.spin_up_of(drive)
         missing = sum(math.isnan(cell["core_hours_cell"]) for cell in own)
         own = [cell for cell in own if not math.isnan(cell["core_hours_cell"])]
         total = sum(cell["core_hours_cell"] for cell in own)
@@ -302,9 +301,8 @@ def paper(cells, rows, plan, drives, coarse, about):
         result.append(
             {
                 "drive": drive,
-                "pace": "epsilon" if spin["epsilon"] is not None else "angular acceleration [rad/s2]",
-                "value": spin["epsilon"] if spin["epsilon"] is not None else spin["angular_acceleration"],
-                "timestep_factor": spin["timestep_factor"],
+                "pace": plan.pace(drive),
+                "timestep_factor": plan.spin_up_of(drive)["timestep_factor"],
                 "coarse": coarse[drive],
                 "grains": len(own) * len(plan.seeds),
                 "cells_missing": missing,

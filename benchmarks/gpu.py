@@ -148,7 +148,7 @@ def _measure_paper(out, plan, minutes, about, say):
             for seed in plan.seeds
         ]  # fmt: skip
         start = time.perf_counter()
-        runs = spin_up_many(many, drive=drive, **plan.spin_up_of(drive))
+        runs = spin_up_many(many, drive=drive, **plan.spin_up_of(drive, kind))
         seconds = time.perf_counter() - start
         rows.append(
             {

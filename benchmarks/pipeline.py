@@ -77,9 +77,9 @@ def measure(out, plan, *, root, sizes, about, say):
 
 def _work(plan, size, seeds):
     """Time that growing and spinning up alone takes [s]."""
-    arguments = arguments_of(plan, DRIVE, 1) | {"max_steps": plan.spin_up_of(DRIVE)["max_steps"]}
     start = time.perf_counter()
     for kind in plan.config["types"]:
+        arguments = arguments_of(plan, DRIVE, kind, 1) | {"max_steps": plan.spin_up_of(DRIVE)["max_steps"]}
         for seed in plan.seeds[:seeds]:
             grain = grain_of(plan, (plan.config["materials"][0], kind, size), seed)
             cut_bound(grain)

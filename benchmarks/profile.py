@@ -37,7 +37,7 @@ def measure(out, plan, *, sizes, about, say):
     for size in sizes:
         for kind in plan.config["types"]:
             grain = grain_of(plan, (material, kind, size), plan.seeds[0])
-            run = spin_up(grain, **arguments_of(plan, DRIVE, 1))
+            run = spin_up(grain, **arguments_of(plan, DRIVE, kind, 1))
             cell = {"drive": DRIVE, "material": material, "type": kind, "size_nm": size}
             for low, high, steps, updates in shares(run):
                 rows.append(

@@ -351,11 +351,11 @@ def _cost(out):
         missing = f"**{row.cells_missing} cells are missing: their runs failed.** " if row.cells_missing else ""
         seeds = (
             f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
-            if row.pace == "epsilon"
+            if row.pace.startswith("epsilon")
             else "How seeds differ within a cell is not known for this law. "
         )
         words.append(
-            f"**Drive `{row.drive}`, {row.pace} {row.value:g}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
+            f"**Drive `{row.drive}`, {row.pace}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
             f"core-hours** for {row.grains} grains ({low:.1f} to {high:.1f} if all cells not run in full were off by "
             f"that scatter together). One grain a cell was run {row.coarse} and {FASTER * row.coarse} times "
             f"as fast as the config says; what of its time grows with the steps was multiplied up, the rest was not. "

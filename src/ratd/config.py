@@ -237,10 +237,13 @@ def check(config, schemas="config/schema"):
                     f"the size of the fewest monomers that {kind} is made of"
                 )
     for drive in config["drives"]:
-        laws = {key: plan.spin_up_of(drive)[key] for key in ("epsilon", "angular_acceleration")}
-        if sum(value is not None for value in laws.values()) != 1:
-            where = "spin_up and literal together" if drive == "literal" else "spin_up"
-            raise InputError(f"config: {where} give {laws}; allowed: a number for one of them and null for the other")
+        where = "spin_up and literal together" if drive == "literal" else "spin_up"
+        for kind in config["types"]:
+            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("epsilon", "angular_acceleration")}
+            if sum(value is not None for value in laws.values()) != 1:
+                raise InputError(
+                    f"config: {where} give {laws} for {kind}; allowed: a number for one of them and null for the other"
+                )
     _check_fewer(plan)
     for k, grain in enumerate(config["snapshots"]["grains"]):
         plan.find_cell(grain, f"snapshots.grains[{k}]")
@@ -592,9 +595,26 @@ class Plan:
             "migration": self.config["growth"]["migration"],
         }
 
-    def spin_up_of(self, drive):
-        """Part of the config on the spin-up, for one drive."""
-        return self.config["spin_up"] | (self.config["literal"] if drive == "literal" else {})
+    def spin_up_of(self, drive, kind=None):
+        """Part of the config on the spin-up, for one drive.
+
+        ``epsilon`` is that of a type, a number or None; with no type given as it stands in the config, where it may be
+        a mapping from type to number.
+        """
+        own = self.config["spin_up"] | (self.config["literal"] if drive == "literal" else {})
+        if kind is not None and isinstance(own["epsilon"], dict):
+            own["epsilon"] = own["epsilon"].get(kind)
+        return own
+
+    def pace(self, drive):
+        """How fast a drive spins up, in words, such as ``"epsilon = 0.01"``."""
+        law = self.spin_up_of(drive)
+        epsilon = law["epsilon"]
+        if isinstance(epsilon, dict):
+            return "epsilon = " + ", ".join(f"{epsilon[kind]:g} ({kind})" for kind in self.config["types"])
+        if epsilon is not None:
+            return f"epsilon = {epsilon:g}"
+        return f"d omega/dt = {law['angular_acceleration']:.3g} rad/s²"
 
     def spin_up(self, drive, material, kind, size, block):
         """Settings of the spin-up of one block."""
@@ -608,7 +628,7 @@ class Plan:
         ]
         return {
             "drive": drive,
-            **self.spin_up_of(drive),
+            **self.spin_up_of(drive, kind),
             "snapshot_seeds": sorted(set(snapshots)),
             "snapshot_every": self.config["snapshots"]["every"] if snapshots else 0,
         }
@@ -686,7 +706,7 @@ class Plan:
                 "grain": self.grow(own["material"], kind, size),
                 "changed": way["changed"],
                 "seeds": list(range(first, first + own["seeds"]["number"])),
-                "spin_up": {"drive": drive} | self.spin_up_of(drive) | (pace if drive == "prescribed" else {}),
+                "spin_up": {"drive": drive} | self.spin_up_of(drive, kind) | (pace if drive == "prescribed" else {}),
             }
             for way in self.parameter_ways
         ]
@@ -710,7 +730,7 @@ class Plan:
                 "grain": self.grow(own["material"], own["type"], size_label(own["size_nm"])),
                 "changed": {},
                 "seeds": list(range(first, first + own["seeds"]["number"])),
-                "spin_up": {"drive": "literal"} | self.spin_up_of("literal") | pace,
+                "spin_up": {"drive": "literal"} | self.spin_up_of("literal", own["type"]) | pace,
                 "reach": own["reach"],
             }
         ]
@@ -730,7 +750,7 @@ class Plan:
                 "grain": self.grow(own["material"], kind, size_label(own["size_nm"])),
                 "changed": {"viscous_time": 0.0} if formula == DAMPING else {},
                 "seeds": list(range(first, first + own["seeds"]["number"])),
-                "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed") | pace,
+                "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed", kind) | pace,
             }
             for kind in own["types"]
         ]

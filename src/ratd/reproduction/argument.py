@@ -145,7 +145,7 @@ def calibration_section(data):
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
         parts.append(
-            f"The grains of the drive `literal` here were spun up with {_rate(law)} and f = "
+            f"The grains of the drive `literal` here were spun up with {data.plan.pace('literal')} and f = "
             f"{law['timestep_factor']:g}. The table sets them beside Eq. 33 with Table 3 for the same grains: level "
             "(median of the ratio), and how the types are ordered at the sizes that all of them have, from the lowest "
             "omega to the highest."
@@ -260,13 +260,6 @@ def _slope(table):
         return np.nan, np.nan
     (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
     return float(slope), float(np.sqrt(covariance[0, 0]))
-
-
-def _rate(law):
-    """The spin-up law of a drive, text."""
-    if law["epsilon"] is not None:
-        return f"epsilon = {law['epsilon']:g}"
-    return f"d omega/dt = {number(law['angular_acceleration'])} rad/s²"
 
 
 def _order(table, column):
