@@ -9,7 +9,7 @@ from pathlib import Path
 
 from snakemake.utils import min_version
 
-from ratd import jobs
+from ratd import jobs, partial
 from ratd.config import check
 from ratd.errors import InputError
 
@@ -91,4 +91,4 @@ rule write_config:
 
 
 onsuccess:
-    jobs.tidy(PLAN.results)
+    partial.tidy(PLAN.results)

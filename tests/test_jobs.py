@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from files import make_grain
-from ratd import io, jobs
+from ratd import io, jobs, partial
 from ratd.errors import InputError
 from ratd.materials import MATERIALS
 
@@ -99,7 +99,7 @@ def test_damaged_partial_result_is_made_anew(tmp_path):
     target = tmp_path / "seeds_0-2.nc"
     with pytest.raises(KeyboardInterrupt):
         run_block(tmp_path, target, die_at=2)
-    piece = jobs.partial_folder(target) / "seed_1.nc"
+    piece = partial.partial_folder(target) / "seed_1.nc"
     piece.write_bytes(piece.read_bytes()[:-50])
     assert run_block(tmp_path, target) == [1, 2]
 
@@ -173,7 +173,7 @@ def start_python(source, *arguments):
 HOLD_LOCK = """
     import logging, sys, time
     from pathlib import Path
-    from ratd.jobs import locked
+    from ratd.partial import locked
     with locked(sys.argv[1], logging.getLogger()):
         print("ready", flush=True)
         time.sleep(float(sys.argv[2]))
@@ -183,7 +183,7 @@ HOLD_LOCK = """
 
 def test_lock_makes_the_second_one_wait(tmp_path, caplog):
     process = start_python(HOLD_LOCK, tmp_path / "lock", 0.5)
-    with caplog.at_level(logging.INFO), jobs.locked(tmp_path / "lock", logging.getLogger()):
+    with caplog.at_level(logging.INFO), partial.locked(tmp_path / "lock", logging.getLogger()):
         assert (tmp_path / "lock.done").exists()
     assert "waiting for it" in caplog.text
     process.wait()
@@ -194,7 +194,7 @@ def test_lock_ends_with_a_killed_process(tmp_path):
     process.kill()
     process.wait()
     start = time.monotonic()
-    with jobs.locked(tmp_path / "lock", logging.getLogger()):
+    with partial.locked(tmp_path / "lock", logging.getLogger()):
         assert time.monotonic() - start < 100
     assert not (tmp_path / "lock.done").exists()
 
@@ -202,15 +202,15 @@ def test_lock_ends_with_a_killed_process(tmp_path):
 def test_tidy_removes_partial_results_of_finished_files_only(tmp_path):
     finished, unfinished, at_work = (tmp_path / "a" / f"{name}.nc" for name in ("finished", "unfinished", "at_work"))
     for target in (finished, unfinished, at_work):
-        jobs.partial_folder(target).mkdir(parents=True)
-        (jobs.partial_folder(target) / "seed_0.nc").write_text("")
+        partial.partial_folder(target).mkdir(parents=True)
+        (partial.partial_folder(target) / "seed_0.nc").write_text("")
     for target in (finished, at_work):
         target.write_text("")
-    process = start_python(HOLD_LOCK, jobs.partial_folder(at_work) / "lock", 1000)
-    jobs.tidy(tmp_path)
-    assert not jobs.partial_folder(finished).exists()
-    assert (jobs.partial_folder(unfinished) / "seed_0.nc").exists()
-    assert (jobs.partial_folder(at_work) / "seed_0.nc").exists()
+    process = start_python(HOLD_LOCK, partial.partial_folder(at_work) / "lock", 1000)
+    partial.tidy(tmp_path)
+    assert not partial.partial_folder(finished).exists()
+    assert (partial.partial_folder(unfinished) / "seed_0.nc").exists()
+    assert (partial.partial_folder(at_work) / "seed_0.nc").exists()
     process.kill()
     process.wait()
 

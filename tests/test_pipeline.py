@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from ratd import io
-from ratd.jobs import partial_folder
+from ratd.partial import partial_folder
 from ratd.provenance import file_hash
 
 ROOT = Path(__file__).parents[1]

@@ -1,27 +1,19 @@
-"""What a job of the pipeline needs around the calculation: log, provenance, partial results, locks.
-
-A job makes one file for a block of grains, or several of them. Each finished grain is kept at once as a small file of
-its own in the folder `TARGET.partial`, which Snakemake does not know of, with the hashes of the source, settings and
-inputs that it was made with. A job that was killed takes from there what still fits, and only that. The folder is
-removed by `tidy` when the pipeline has succeeded.
+"""What a job of the pipeline needs around the calculation: log, provenance, blocks of grains that outlive a kill.
 
 This module decides no number: it is left out of all source hashes (see `ratd.provenance`).
 """
 
 import fcntl
 import logging
-import os
-import shutil
 import sys
 import time
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from contextlib import ExitStack
 from pathlib import Path
 
 from ratd import io, schema
 from ratd.errors import FileError, InputError
-from ratd.materials import Material
-from ratd.provenance import provenance, settings_hash, source_hash
+from ratd.partial import Block, locked
+from ratd.provenance import provenance, source_hash
 
 WRITES = {
     "grow": ("grains",),
@@ -83,41 +75,6 @@ def code_hashes(scripts):
         Name of the rule -> `code_hash`.
     """
     return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
-
-
-@dataclass(frozen=True)
-class Block:
-    """A file to write, with the grains of one block.
-
-    Attributes
-    ----------
-    target : Path
-        The file.
-    material : ratd.materials.Material
-        What the grains are made of.
-    seeds : list of int
-        Seeds of the grains, in the order in which they stand in the file.
-    provenance : dict
-        Attributes of the file, from `ratd.provenance.provenance`.
-    """
-
-    target: Path
-    material: Material
-    seeds: list
-    provenance: dict
-
-    @property
-    def folder(self):
-        """Folder of the finished grains while the file is not finished."""
-        return partial_folder(self.target)
-
-    def piece(self, seed):
-        """File of one finished grain."""
-        return self.folder / f"seed_{seed}.nc"
-
-    def checkpoint(self, seed):
-        """Below this path a grain may keep what it needs to go on in its middle."""
-        return self.folder / f"seed_{seed}.{settings_hash(self.provenance)}.checkpoint"
 
 
 class Job:
@@ -308,67 +265,6 @@ def duration(seconds):
         if seconds >= 2 * length:
             return f"about {seconds / length:.0f} {unit}"
     return f"about {seconds:.0f} s"
-
-
-def partial_folder(target):
-    """Folder of the finished grains of a file that is not finished."""
-    target = Path(target)
-    return target.with_name(f"{target.name}.partial")
-
-
-@contextmanager
-def locked(path, log):
-    """Hold a lock that ends with the process, however it ends; wait while another process holds it.
-
-    Two jobs for the same file can be at work at once when Snakemake alone was killed and started again: the second
-    one waits, and finds the grains of the first.
-
-    Parameters
-    ----------
-    path : path-like
-        The file to lock, made if needed.
-    log : logging.Logger
-        Told when there is something to wait for.
-    """
-    path = Path(path)
-    while True:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle = open(path, "a")
-        except FileNotFoundError:  # `tidy` removed the folder at this moment
-            continue
-        except OSError as error:
-            raise FileError(f"{path}: cannot be written ({error.strerror})") from error
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            log.info("another process is at work on the same file, waiting for it")
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        except OSError as error:
-            raise FileError(f"{path}: cannot be locked ({error.strerror})") from error
-        # the file may have been removed while we waited: then the lock is on nothing
-        with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(handle.fileno()), os.stat(path)):
-                break
-        handle.close()
-    with handle:
-        yield
-
-
-def tidy(results):
-    """Remove the folders of partial results whose files are finished, and that no process is at work in.
-
-    Parameters
-    ----------
-    results : path-like
-        Folder of all results.
-    """
-    for folder in sorted(Path(results).rglob("*.partial")):
-        if not folder.with_suffix("").is_file():
-            continue
-        with open(folder / "lock", "a") as handle, suppress(BlockingIOError):
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(folder)
 
 
 def release_stale_locks(folder=".snakemake"):

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from ratd.errors import InputError
 
-PLUMBING = frozenset({"ratd", "ratd.schema", "ratd.io", "ratd.provenance", "ratd.config", "ratd.jobs"})
+PLUMBING = frozenset({"ratd", "ratd.schema", "ratd.io", "ratd.provenance", "ratd.config", "ratd.jobs", "ratd.partial"})
 """Modules outside every source hash: they carry numbers from a file to a function and back."""
 
 NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")

@@ -11,8 +11,8 @@ from ratd.engine.layout import DT
 from ratd.engine.state import new_state
 from ratd.grain import Grain
 from ratd.growth import RadiusDistribution, grow
-from ratd.jobs import Block
 from ratd.materials import Material
+from ratd.partial import Block
 from ratd.spinup import spin_up
 
 __all__ = ["of_material", "spin_up_ways", "steps_to", "way_material"]

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from ratd import io
 from ratd.cuda.spin_up import spin_up_many
-from ratd.jobs import Block, Job, seeds_of
+from ratd.jobs import Job, seeds_of
+from ratd.partial import Block
 
 with Job(snakemake) as job:
     blocks, grains, settings = [], {}, {}
