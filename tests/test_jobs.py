@@ -39,8 +39,8 @@ def make_job(tmp_path, settings=None, code=None):
     )
 
 
-def run_block(tmp_path, target, settings=None, die_at=None):
-    """Run a block of three grains; return the seeds that were computed. `die_at` raises at that seed."""
+def run_block(tmp_path, target, settings=None, die_at=None, seeds=SEEDS):
+    """Run a block of grains; return the seeds that were computed. `die_at` raises at that seed."""
     made = []
 
     def make(seed, checkpoint):
@@ -51,7 +51,7 @@ def run_block(tmp_path, target, settings=None, die_at=None):
         return io.grain_row(make_grain(seed), 1e8)
 
     with jobs.Job(make_job(tmp_path, settings)) as job:
-        job.block(target, "grains", MATERIALS["q-S"], SEEDS, make)
+        job.block(target, "grains", MATERIALS["q-S"], seeds, make)
     return made
 
 
@@ -102,6 +102,30 @@ def test_damaged_partial_result_is_made_anew(tmp_path):
     piece = partial.partial_folder(target) / "seed_1.nc"
     piece.write_bytes(piece.read_bytes()[:-50])
     assert run_block(tmp_path, target) == [1, 2]
+
+
+def test_short_grains_share_a_piece(tmp_path, monkeypatch):
+    """The first one has a piece of its own, the others come before enough time has gone by for a second one."""
+    monkeypatch.setattr(partial, "WORK_BETWEEN_PIECES", 1e6)
+    target, seeds = tmp_path / "seeds_0-4.nc", [0, 1, 2, 3, 4]
+    with pytest.raises(KeyboardInterrupt):
+        run_block(tmp_path, target, die_at=4, seeds=seeds)
+    folder = partial.partial_folder(target)
+    pieces = sorted(folder.glob("*.nc"))
+    assert [[grain.seed for grain in io.read_grains(piece)] for piece in pieces] == [[0], [1, 2, 3]]
+    assert [path.name[:6] for path in folder.glob("*.checkpoint")] == []
+    assert run_block(tmp_path, target, seeds=seeds) == [4]
+    pieces[1].unlink()
+    target.unlink()
+    assert run_block(tmp_path, target, seeds=seeds) == [1, 2, 3, 4]
+    assert [grain.seed for grain in io.read_grains(target)] == seeds
+
+
+def test_long_grains_have_a_piece_each(tmp_path, monkeypatch):
+    monkeypatch.setattr(partial, "WORK_BETWEEN_PIECES", 0)
+    target = tmp_path / "seeds_0-2.nc"
+    run_block(tmp_path, target)
+    assert len(list(partial.partial_folder(target).glob("*.nc"))) == 3
 
 
 def test_bad_input_ends_with_one_sentence(tmp_path, capsys):

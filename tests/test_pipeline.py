@@ -270,14 +270,14 @@ def test_kill_in_the_middle_then_the_same_command_again(finished, tmp_path):
         target = tmp_path / stage
         folder = partial_folder(target)
         process = pipeline.start("--cores", "1")
-        wait_for(lambda folder=folder: len(list(folder.glob("seed_*.nc"))) >= 2, process)
+        wait_for(lambda folder=folder: len(list(folder.glob("seed_*.nc"))) >= 1, process)
         if stage == RUNS:
             os.killpg(process.pid, signal.SIGKILL)
         else:
             process.kill()  # the script that it started goes on, and is still at work when the next one starts
         process.wait()
         pieces = {path.name: path.stat().st_mtime_ns for path in folder.glob("seed_*.nc")}
-    assert not target.exists() and 2 <= len(pieces) < 6
+    assert not target.exists() and len(pieces) == 1
     assert list((tmp_path / ".snakemake" / "locks").iterdir())  # what Snakemake would ask to be unlocked
 
     process = pipeline.start("--cores", "1")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ratd import io, schema
 from ratd.errors import FileError, InputError
-from ratd.partial import Block, locked
+from ratd.partial import Block, Pieces, locked
 from ratd.provenance import provenance, source_hash
 
 WRITES = {
@@ -188,12 +188,8 @@ class Job:
         with ExitStack() as locks:
             for block in sorted(blocks, key=lambda block: block.target):
                 locks.enter_context(locked(block.folder / "lock", self.log))
-            waiting = [
-                (block, seed)
-                for block in blocks
-                for seed in block.seeds
-                if not io.holds(block.piece(seed), kind, block.provenance)
-            ]
+            pieces = {block.target: Pieces(block, kind) for block in blocks}
+            waiting = [(block, seed) for block in blocks for seed in block.seeds if seed not in pieces[block.target]]
             every = sum(len(block.seeds) for block in blocks)
             kept = every - len(waiting)
             finished = kept
@@ -202,19 +198,22 @@ class Job:
             def done(number, row):
                 nonlocal finished, start
                 block, seed = waiting[number]
-                io.write(block.piece(seed), io.block([row], kind, block.material, block.provenance), kind)
-                block.checkpoint(seed).unlink(missing_ok=True)
+                pieces[block.target].add(seed, row)
                 finished += 1
                 seconds = time.monotonic() - start
                 start = time.monotonic()
                 place = f"{block.target.parent.name} " if len(blocks) > 1 else ""
                 self.log.info(f"{place}seed {seed}: done in {seconds:.1f} s ({finished} of {every} grains)")
 
-            if waiting:
-                make(waiting, done)
-            for block in blocks:
-                rows = [row for seed in block.seeds for row in io.rows(io.read(block.piece(seed), kind), kind)]
-                io.write(block.target, io.block(rows, kind, block.material, block.provenance), kind)
+            try:
+                if waiting:
+                    make(waiting, done)
+            except BaseException:
+                for own in pieces.values():
+                    own.write()
+                raise
+            for own in pieces.values():
+                own.join()
             where = blocks[0].target if len(blocks) == 1 else f"{len(blocks)} files"
             self.log.info(f"{every} grains written to {where}, {kept} of them were finished before")
 

@@ -1,8 +1,8 @@
 """Finished grains of files that are not finished: kept on the disk, found again after a kill, removed at the end.
 
-Grains that are finished go into small files in the folder `TARGET.partial`, which Snakemake does not know of, with the
-hashes of the source, settings and inputs that they were made with. A job that was killed takes from there what still
-fits, and only that.
+Grains that are finished go into small files, pieces, in the folder `TARGET.partial`, which Snakemake does not know of,
+with the hashes of the source, settings and inputs that they were made with. A job that was killed takes from there what
+still fits, and only that.
 
 This module decides no number: it is left out of all source hashes (see `ratd.provenance`).
 """
@@ -10,13 +10,18 @@ This module decides no number: it is left out of all source hashes (see `ratd.pr
 import fcntl
 import os
 import shutil
+import time
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from ratd import io
 from ratd.errors import FileError
 from ratd.materials import Material
 from ratd.provenance import settings_hash
+
+WORK_BETWEEN_PIECES = 20
+"""Work that a kill may cost, over the time that writing a piece takes: short grains share one."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +51,69 @@ class Block:
         return partial_folder(self.target)
 
     def piece(self, seed):
-        """File of one finished grain."""
+        """File of finished grains, of which this seed is the first."""
         return self.folder / f"seed_{seed}.nc"
 
     def checkpoint(self, seed):
         """Below this path a grain may keep what it needs to go on in its middle."""
         return self.folder / f"seed_{seed}.{settings_hash(self.provenance)}.checkpoint"
+
+
+class Pieces:
+    """The finished grains of one block: the latest in memory, those before in pieces.
+
+    The first grain becomes a piece at once, which tells how long that takes. From then on a piece is written when
+    `WORK_BETWEEN_PIECES` times as much time has gone by, with all that was finished since.
+
+    Parameters
+    ----------
+    block : Block
+    kind : str
+        A key of `ratd.schema.KINDS`.
+    """
+
+    def __init__(self, block, kind):
+        self._block, self._kind = block, kind
+        self._files = {}  # seed -> piece
+        self._rows = {}  # seed -> row that no piece holds yet
+        self._pause, self._written = 0.0, time.monotonic()
+        for path in sorted(block.folder.glob("seed_*.nc")):
+            if io.holds(path, kind, block.provenance):
+                self._files |= dict.fromkeys(io.read(path, kind)["seed"].values.tolist(), path)
+
+    def __contains__(self, seed):
+        return seed in self._files or seed in self._rows
+
+    def add(self, seed, row):
+        """Keep the row (see `ratd.io`) of a grain that is finished."""
+        self._rows[seed] = row
+        if time.monotonic() - self._written >= self._pause:
+            self.write()
+
+    def write(self):
+        """Write a piece of the grains that are not in one."""
+        if not self._rows:
+            return
+        start = time.monotonic()
+        path = self._block.piece(next(iter(self._rows)))
+        self._write(path, list(self._rows.values()))
+        self._files |= dict.fromkeys(self._rows, path)
+        self._rows = {}
+        self._written = time.monotonic()
+        self._pause = WORK_BETWEEN_PIECES * (self._written - start)
+
+    def join(self):
+        """Write the file of the block, all of whose grains are finished."""
+        rows = dict(self._rows)
+        for path in sorted(set(self._files.values())):
+            file = io.read(path, self._kind)
+            rows |= zip(file["seed"].values.tolist(), io.rows(file, self._kind), strict=True)
+        self._write(self._block.target, [rows[seed] for seed in self._block.seeds])
+
+    def _write(self, path, rows):
+        io.write(path, io.block(rows, self._kind, self._block.material, self._block.provenance), self._kind)
+        for seed in self._rows:
+            self._block.checkpoint(seed).unlink(missing_ok=True)
 
 
 def partial_folder(target):
