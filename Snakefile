@@ -9,9 +9,10 @@ from pathlib import Path
 
 from snakemake.utils import min_version
 
-from ratd import jobs, partial
+from ratd import jobs
 from ratd.config import check
 from ratd.errors import InputError
+from ratd.partial import tidy
 
 min_version("9.27")
 
@@ -91,4 +92,4 @@ rule write_config:
 
 
 onsuccess:
-    partial.tidy(PLAN.results)
+    tidy(PLAN.results)

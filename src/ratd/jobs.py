@@ -10,7 +10,7 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from ratd import io, schema
+from ratd import schema
 from ratd.errors import FileError, InputError
 from ratd.partial import Block, Pieces, locked
 from ratd.provenance import provenance, source_hash
