@@ -8,6 +8,7 @@ import pytest
 from ratd.config import check, load, merge, read_yaml, size_label
 from ratd.errors import InputError
 from ratd.materials import MATERIALS
+from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 
 ROOT = Path(__file__).parents[1]
 DEFAULT, QUICK = ROOT / "config" / "config.yaml", ROOT / "config" / "quick.yaml"
@@ -93,7 +94,7 @@ def test_quick_is_three_of_each():
         ({"spin_up": {"epsilon": {"BAM3": 0.1}}}, "the key 'BAM3' in spin_up.epsilon is unknown", "BA, BAM1, BAM2"),
         ({"literal": {"epsilon": {"BA": 0.1}, "angular_acceleration": None}, "drives": ["literal"]}, "BAM1", "null"),
         ({"spin_up": None}, "spin_up is None", "a mapping"),
-        ({"spin_up": {"angular_acceleration": 1e14}}, "spin_up give {'epsilon': 0.01, 'angular", "null for the other"),
+        ({"spin_up": {"angular_acceleration": 1e14}}, "spin_up give {'epsilon': 0.02, 'angular", "null for the other"),
         ({"drives": ["literal"], "literal": {"angular_acceleration": None}}, "spin_up and literal together", "null"),
         ({"drives": ["torque"]}, "drives[0] is 'torque'", "prescribed"),
         ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
@@ -270,9 +271,19 @@ def test_settings_are_in_si_units():
 def test_drives_have_spin_up_laws_of_their_own():
     plan = with_changes({"drives": ["prescribed", "literal"]})
     prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
-    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (0.01, None)
+    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (EPSILON["BA"], None)
     assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1e15)
     assert prescribed["records"] == literal["records"]
+
+
+def test_epsilon_is_one_for_all_types_or_one_for_each():
+    each, same = load(DEFAULT), with_changes({"spin_up": {"epsilon": 0.05}})
+    for kind, epsilon in EPSILON.items():
+        assert each.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == epsilon
+        assert same.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == 0.05
+    assert each.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
+    assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1e+15 rad/s²"
+    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.01 (BAM2)"
 
 
 def test_snapshots_concern_the_block_of_the_grain_only():

@@ -12,6 +12,7 @@ import ratd
 from ratd import schema
 from ratd.markdown import markdown_table, measured
 from ratd.materials import MATERIALS
+from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 from ratd.validation import (
     convergence,
     energy,
@@ -129,7 +130,7 @@ def convergence_rows():
     return convergence.compute(
         SMALL
         | {
-            "production": {"epsilon": 0.1, "timestep_factor": 0.05},
+            "production_timestep_factor": 0.05,
             "epsilon": [0.5, 0.1],
             "step_epsilon": 0.2,
             "timestep_factor": {"implicit": [0.02, 0.1], "explicit": [0.02, 0.6]},
@@ -156,10 +157,10 @@ def test_convergence_of_one_grain(convergence_rows):
     assert times.loc[1e-12] < 1.0 < times.loc[9e-12]
 
 
-def epsilon_row(study, seed, epsilon, omega, a_eff=1e-7):
+def epsilon_row(study, seed, epsilon, omega, a_eff=1e-7, kind="BA"):
     """A run of the convergence check with all marks at omega."""
     row = {name: "" if not units else np.nan for name, (units, _) in convergence.COLUMNS.items()}
-    row |= dict(study=study, material="q-S", type="BA", damping="implicit", outcome="one contact left")
+    row |= dict(study=study, material="q-S", type=kind, damping="implicit", outcome="one contact left")
     row |= dict(a_eff=a_eff, seed=seed, epsilon=epsilon, timestep_factor=0.05)
     return row | {name: omega for name in convergence.MARKS}
 
@@ -177,28 +178,30 @@ def test_ratios_are_to_the_finest_run_of_the_same_grain():
     assert np.isnan(show_convergence.coarsest(statistics[2:]))
 
 
-def test_a_large_grain_is_spun_up_with_its_own_epsilon_alone():
-    settings = SMALL | {"production": {"epsilon": 0.1, "timestep_factor": 0.1}, "epsilon_large": [0.2, 0.1]}
+def test_a_grain_for_slow_spin_ups_is_spun_up_with_its_own_epsilon_alone():
+    settings = SMALL | {"production_timestep_factor": 0.1, "epsilon_fine": [0.2, 0.1]}
     rows = convergence.compute(settings)
-    assert [(row["study"], row["epsilon"]) for row in rows] == [("epsilon_large", 0.2), ("epsilon_large", 0.1)]
+    assert [(row["study"], row["epsilon"]) for row in rows] == [("epsilon_fine", 0.2), ("epsilon_fine", 0.1)]
     assert all(row["omega_first_loss"] > 0.0 for row in rows)
 
 
-def test_larger_grains_have_tables_of_their_own(convergence_rows):
-    large = [
-        epsilon_row("epsilon_large", seed, epsilon, omega, 3e-7)
+def test_slow_spin_ups_have_tables_of_their_own(convergence_rows):
+    """Each cell is compared with its own slowest run, and judged at the epsilon of its type."""
+    fine = [
+        epsilon_row("epsilon_fine", seed, epsilon * EPSILON[kind], omega, 3e-7, kind)
+        for kind in ("BA", "BAM1")
         for seed in range(3)
-        for epsilon, omega in ((0.005, 1.0), (0.01, 1.0625), (0.02, 1.125))  # exact in binary
+        for epsilon, omega in ((0.5, 1.0), (1, 1.0625 if kind == "BA" else 1.015625), (2, 1.125))  # exact in binary
     ]
     without = show_convergence.tell(pd.DataFrame(convergence_rows))
-    text = works(show_convergence, convergence_rows + large)
-    assert "larger grain" not in without and "3 larger grains" in text
+    text = works(show_convergence, convergence_rows + fine)
+    assert "epsilon of production is another" not in without and "6 grains that show it" in text
     words = text.split("\n\n")
-    assert set(without.split("\n\n")) <= set(words)  # nothing else has changed
     for mark in show_convergence.IN_CELLS:
-        head = words.index(f"{mark} by type and size:", words.index(next(w for w in words if "larger grains" in w)))
-        assert "| BA | 300 | 3 | 1 | 1.06 | 1.12 |" in words[head + 1]
-    assert "omega_mass_75 in 1 of 1 cells (BA 300 nm 1.06)" in text
+        head = words.index(f"{mark} by type and size:", words.index(next(w for w in words if "6 grains" in w)))
+        assert "| BA | 300 | 3 | – | – | 1 | 1.06 | 1.12 |" in words[head + 1]
+        assert "| BAM1 | 300 | 3 | 1 | 1.02 | 1.12 | – | – |" in words[head + 1]
+    assert "omega_mass_75 in 1 of 2 cells (BA 300 nm 1.06)" in text
 
 
 def test_theory(tmp_path):
@@ -244,7 +247,7 @@ def test_energy_put_in_is_stored_or_dissipated():
 def test_an_elastic_grain_keeps_its_energy_to_second_order_of_the_step():
     rows = energy_step.compute(
         SMALL
-        | {"a_eff": 70e-9, "seed": 4, "speed": 0.03, "timestep_factor": [0.0125, 0.025, 0.05, 0.1]}
+        | {"a_eff": 70e-9, "seed": 4, "speed": 0.03, "timestep_factor": [0.0125, 0.025, 0.05, 0.125]}
         | {"steps": 20_000, "steps_at": 0.05, "samples": 40}
     )
     table = pd.DataFrame(rows)
@@ -378,8 +381,11 @@ def test_plan_names_every_piece_once():
     full = plan.pieces["full"]["convergence"]
     assert full["q-S_BAM2_150nm_3"]["a_eff"] == pytest.approx(150e-9) and full["q-S_BAM2_150nm_3"]["seed"] == 3
     assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
-    large = full["large_BAM1_300nm_2"]
-    assert large["a_eff"] == pytest.approx(300e-9) and large["epsilon_large"] and "step_epsilon" not in large
+    fine = full["fine_BAM1_300nm_2"]
+    assert fine["a_eff"] == pytest.approx(300e-9) and fine["epsilon_fine"] and "step_epsilon" not in fine
+    for check in ("theory", "energy"):
+        for piece in plan.pieces["full"][check].values():
+            assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)
     printed = plan.pieces["full"]["literal"]
     assert len({(piece["type"], piece["a_eff"], piece["seed"]) for piece in printed.values()}) == len(printed) >= 8
 

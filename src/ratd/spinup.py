@@ -47,10 +47,10 @@ RESIDUAL = 1e-3
 """A grain is relaxed when no net force exceeds this part of the least pull-off force in it."""
 RELAXATION_STEPS = 50
 RELAXATION_ROUNDS = 20_000
-EPSILON = 0.01
-TIMESTEP_FACTOR = 0.1
+EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.01}
+TIMESTEP_FACTOR = 0.125
 """What a spin-up takes when it is not told otherwise: within 3 % of the limit of a slow spin-up and a short step
-(docs/validation.md)."""
+(docs/validation.md). A grain of no known type takes the least epsilon."""
 FIRST_LOSS = 0.7
 """Part of the cut bound from which on epsilon is constant: the first monomers leave at 0.67 to 0.86 of the bound
 (medians of BAM1, BAM2 and BA; docs/validation.md)."""
@@ -186,8 +186,8 @@ def spin_up(
     drive : {"prescribed", "literal"}
         The consistent model with the outer torque, or the equations as printed (see `ratd.drives`).
     epsilon : float, optional
-        Spin up with this constant (d omega/dt)/omega^2 above `FIRST_LOSS` times the cut bound omega_1, and with an
-        even rise of omega^2 below it. `EPSILON` when neither this nor `angular_acceleration` is given.
+        Spin up with this constant (d omega/dt)/omega^2 above omega_1, `FIRST_LOSS` times the cut bound, and with an
+        even rise of omega^2 below it. `EPSILON` of its type when neither this nor `angular_acceleration` is given.
     angular_acceleration : float, optional
         Spin up after Eq. 24 instead, with this initial d omega/dt [rad/s2].
     coriolis : {"exact", "explicit"}, optional
@@ -199,9 +199,9 @@ def spin_up(
     max_steps : int, optional
         End after so many steps.
     records : int
-        Records of each octave of omega above the cut bound omega_1. They are evenly spaced in omega, by
-        omega_1/(2 records) up to omega_1; for each octave above the spacing doubles, so that a small remnant, which
-        holds to hundreds of omega_1, costs few records.
+        Records of each octave of omega above the cut bound. They are evenly spaced in omega, by bound/(2 records) up to
+        the bound; for each octave above the spacing doubles, so that a small remnant, which holds to hundreds of times
+        the bound, costs few records.
     snapshot_every : int
         Keep positions, fragments and forces of all monomers at every so many records; 0 for never.
     checkpoint : path-like, optional
@@ -254,7 +254,7 @@ class Run:
     Attributes
     ----------
     motion : ratd.drives.Drive
-    omega_1 : float
+    bound : float
         The cut bound [rad/s].
     implicit : bool
         Whether the damping is treated implicitly.
@@ -277,13 +277,13 @@ class Run:
     ):  # fmt: skip
         _check(grain, timestep_factor, damping, max_steps, records, snapshot_every)
         if epsilon is None and angular_acceleration is None:
-            epsilon = EPSILON
+            epsilon = EPSILON.get(grain.type, min(EPSILON.values()))
         self.grain, self.drive, self.epsilon, self.damping = grain, drive, epsilon, damping
         self.timestep_factor, self.records, self.snapshot_every = timestep_factor, records, snapshot_every
-        self.omega_1 = cut_bound(grain)
+        self.bound = cut_bound(grain)
         self.motion = make_drive(
             drive,
-            omega_1=FIRST_LOSS * self.omega_1,
+            omega_1=FIRST_LOSS * self.bound,
             epsilon=epsilon,
             angular_acceleration=angular_acceleration,
             coriolis=coriolis,
@@ -314,7 +314,7 @@ class Run:
 
     def edge(self, ahead=0):
         """Angular velocity [rad/s] of the next record, or of the one that comes `ahead` records after it."""
-        return min(_edge(len(self.rows) + ahead, self.omega_1, self.records), OMEGA_RAT)
+        return min(_edge(len(self.rows) + ahead, self.bound, self.records), OMEGA_RAT)
 
     def wants_snapshot(self, ahead=0):
         """Whether the next record, or the one that comes `ahead` records after it, has a snapshot."""
@@ -366,7 +366,7 @@ class Run:
             "type": grain.type or "",
             "a_eff": grain.effective_radius,
             "seed": -1 if grain.seed is None else int(grain.seed),
-            "cut_bound": self.omega_1,
+            "cut_bound": self.bound,
         } | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
         run.attrs |= {f"initial_{name}": int(initial[name]) for name in ("n_monomers", "n_contacts")}
         return run
@@ -407,10 +407,10 @@ def _let_go(state):
         note_lost(state, rows[members, MASS].sum(), members.sum())
 
 
-def _edge(number, omega_1, records):
-    """Angular velocity [rad/s] of a record: evenly spaced up to omega_1 by omega_1/(2 records), then in each octave."""
+def _edge(number, bound, records):
+    """Angular velocity [rad/s] of a record: evenly spaced up to the bound by bound/(2 records), then in each octave."""
     octave = max(0, (number - records - 1) // records)
-    return 2.0**octave * omega_1 * (number - octave * records) / (2 * records)
+    return 2.0**octave * bound * (number - octave * records) / (2 * records)
 
 
 def _record(state, density):

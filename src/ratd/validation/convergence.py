@@ -18,7 +18,7 @@ from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 COLUMNS = {
-    "study": ("", "what is varied: epsilon, epsilon_large, timestep_factor, law, xi_c or T_vis"),
+    "study": ("", "what is varied: epsilon, epsilon_fine, timestep_factor, law, xi_c or T_vis"),
     "damping": ("", "treatment of the damping"),
     "law": ("", "spin-up law"),
     "outcome": ("", "how the run ended"),
@@ -43,10 +43,10 @@ def cases(settings):
     Parameters
     ----------
     settings : dict
-        ``production`` {epsilon, timestep_factor}, ``epsilon`` (list), ``step_epsilon`` (the epsilon at which steps and
-        constants are compared), ``timestep_factor`` {implicit: list, explicit: list}, ``xi_c_nm`` and
-        ``viscous_time_ps`` (lists). For a grain that is too large for all that: ``production`` and ``epsilon_large``
-        (list), nothing else.
+        ``production_timestep_factor`` (where no step is varied), ``epsilon`` (list), ``step_epsilon`` (the epsilon at
+        which steps and constants are compared), ``timestep_factor`` {implicit: list, explicit: list}, ``xi_c_nm`` and
+        ``viscous_time_ps`` (lists). For a grain that is to tell of a slow spin-up alone:
+        ``production_timestep_factor`` and ``epsilon_fine`` (list), nothing else.
 
     Returns
     -------
@@ -56,14 +56,14 @@ def cases(settings):
     """
     plain = dict(
         epsilon=settings.get("step_epsilon"),
-        timestep_factor=settings["production"]["timestep_factor"],
+        timestep_factor=settings["production_timestep_factor"],
         damping="implicit",
         law=SPIN_UP_LAWS[CONSTANT_EPSILON],
         xi_c=None,
         viscous_time=None,
     )
-    if "epsilon_large" in settings:
-        return [plain | dict(study="epsilon_large", epsilon=epsilon) for epsilon in settings["epsilon_large"]]
+    if "epsilon_fine" in settings:
+        return [plain | dict(study="epsilon_fine", epsilon=epsilon) for epsilon in settings["epsilon_fine"]]
     found = [plain | dict(study="epsilon", epsilon=epsilon) for epsilon in settings["epsilon"]]
     for damping, factors in settings["timestep_factor"].items():
         found += [plain | dict(study="timestep_factor", timestep_factor=f, damping=damping) for f in factors]

@@ -77,7 +77,7 @@ class Plan:
         }[check](own)
 
     def _convergence(self, own):
-        production, large = {"production": self.config["production"]}, own["large"]
+        production = {"production_timestep_factor": self.config["production"]["timestep_factor"]}
         shared = production | {
             key: own[key] for key in ("epsilon", "step_epsilon", "timestep_factor", "xi_c_nm", "viscous_time_ps")
         }
@@ -88,8 +88,15 @@ class Plan:
                 own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
             )
         }
-        once = production | {"material": large["material"], "epsilon_large": large["epsilon"]}
-        return pieces | {f"large_{name}": piece for name, piece in _each_grain(large["grains"], once).items()}
+        for grains in own["fine"]:
+            once = production | {"material": grains["material"], "epsilon_fine": grains["epsilon"]}
+            pieces |= {f"fine_{name}": piece for name, piece in _each_grain([grains], once).items()}
+        return pieces
+
+    def _production(self, kind):
+        """epsilon and timestep_factor of a type in the pipeline."""
+        production = self.config["production"]
+        return {"epsilon": production["epsilon"][kind], "timestep_factor": production["timestep_factor"]}
 
     def _pull_off(self, own):
         shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
@@ -100,9 +107,9 @@ class Plan:
         return _each_grain(own["grains"], shared)
 
     def _theory(self, own):
-        shared = {"material": own["material"], "seeds": own["seeds"], **self.config["production"]}
+        shared = {"material": own["material"], "seeds": own["seeds"]}
         return {
-            f"{kind}_{size}nm": shared | {"type": kind, "a_eff": size * NM}
+            f"{kind}_{size}nm": shared | self._production(kind) | {"type": kind, "a_eff": size * NM}
             for kind, size in product(own["types"], own["sizes_nm"])
         }
 
@@ -116,9 +123,9 @@ class Plan:
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 
     def _energy(self, own):
-        shared = {"material": own["material"], "a_eff": own["size_nm"] * NM, **self.config["production"]}
+        shared = {"material": own["material"], "a_eff": own["size_nm"] * NM}
         return {
-            f"{kind}_{seed}": shared | {"type": kind, "seed": seed}
+            f"{kind}_{seed}": shared | self._production(kind) | {"type": kind, "seed": seed}
             for kind, seed in product(own["types"], range(own["seeds"]))
         }
 

@@ -36,9 +36,9 @@ def ratios(table, study, finest=None):
     table : pandas.DataFrame
         Columns of `ratd.validation.convergence.COLUMNS`.
     study : str
-        epsilon, epsilon_large, timestep_factor, xi_c or T_vis.
+        epsilon, epsilon_fine, timestep_factor, xi_c or T_vis.
     finest : float, optional
-        Value that the others are compared with; default: the least one.
+        Value that the others are compared with; default: the least one that the grain has.
 
     Returns
     -------
@@ -47,14 +47,15 @@ def ratios(table, study, finest=None):
         marks, and ``broken``: the integration failed, never ended, or lost mass below `EARLY` times the finest run's
         first loss. Broken runs have NaN for ratios.
     """
-    column = {"T_vis": "viscous_time", "epsilon_large": "epsilon"}.get(study, study)
+    column = {"T_vis": "viscous_time", "epsilon_fine": "epsilon"}.get(study, study)
     rows = table[table["study"] == study].copy()
     rows["x"] = rows[column]
     rows["grain"] = [
         f"{m} {t} {a * 1e9:.0f} {s:.0f}" for m, t, a, s in rows[["material", "type", "a_eff", "seed"]].values
     ]
-    finest = rows["x"].min() if finest is None else finest
-    base = rows[np.isclose(rows["x"], finest, rtol=1e-6, atol=0.0) & (rows["damping"] == "implicit")].set_index("grain")
+    base = rows[rows["damping"] == "implicit"]
+    least = base.groupby("grain")["x"].transform("min") if finest is None else finest
+    base = base[np.isclose(base["x"], least, rtol=1e-6, atol=0.0)].set_index("grain")
     ratio = {mark: rows[mark].to_numpy() / base[mark].reindex(rows["grain"]).to_numpy() for mark in MARKS}
     rows["broken"] = (rows["outcome"] != "one contact left") | (ratio["omega_first_loss"] < EARLY)
     for mark in MARKS:
@@ -154,8 +155,8 @@ def tell(table):
     str
         Markdown.
     """
-    large = table["study"] == "epsilon_large"
-    every, table = table, table[~large]
+    fine = table["study"] == "epsilon_fine"
+    every, table = table, table[~fine]
     n = len(table[["material", "type", "a_eff", "seed"]].drop_duplicates())
     sizes = ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
     words = [
@@ -173,15 +174,16 @@ def tell(table):
     words.append(_table(statistics, "epsilon"))
     words.append(_recommend(statistics, "epsilon"))
     words += [_cells(rows, mark) for mark in IN_CELLS]
-    words.append(_cells_within(rows))
-    if large.any():
-        rows = ratios(every, "epsilon_large")
+    if fine.any():
+        rows = ratios(every, "epsilon_fine")
         words.append(
-            f"{plural(rows['grain'].nunique(), 'larger grain')}, with the smallest epsilon alone; "
-            "they have no part in the medians above:"
+            "The epsilon of production is another one for each type, "
+            + ", ".join(f"{epsilon:g} for {kind}" for kind, epsilon in EPSILON.items())
+            + f". {plural(rows['grain'].nunique(), 'grain')} that show it beside slower ones, each over the slowest "
+            "run of the same grain; they have no part in the medians above:"
         )
         words += [_cells(rows, mark) for mark in IN_CELLS]
-        words.append(_cells_within(rows))
+    words.append(_cells_within(rows))
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -219,9 +221,9 @@ def _cells(rows, mark):
 
 def _cells_within(rows, goal=GOAL):
     """A sentence: which cells are off by more than the goal at the epsilon of production."""
-    here = rows[np.isclose(rows["x"], EPSILON)]
+    here = rows[np.isclose(rows["x"], rows["type"].map(EPSILON))]
     if not len(here):
-        return f"No run has the epsilon of production, {EPSILON:g}."
+        return "No run has the epsilon of production."
     parts = []
     for mark in IN_CELLS:
         found = [(cell, median_of(part[mark], part["grain"])) for cell, part in _by_cell(here)]
@@ -231,7 +233,7 @@ def _cells_within(rows, goal=GOAL):
             if abs(s["median"] - 1.0) > goal
         ]
         parts.append(f"{mark} in {len(far)} of {len(found)} cells" + (f" ({', '.join(far)})" if far else ""))
-    return f"At epsilon = {EPSILON:g} the median is off by more than {100 * goal:g} %: " + "; ".join(parts) + "."
+    return f"At the epsilon of production the median is off by more than {100 * goal:g} %: " + "; ".join(parts) + "."
 
 
 def _laws(table):

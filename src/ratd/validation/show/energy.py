@@ -74,10 +74,10 @@ def tell(table):
     return "\n\n".join(
         [
             "## Energy",
-            f"Work of the outer torque = kinetic + potential + dissipated energy, up to the first loss of mass, at "
-            f"epsilon = {table['epsilon'].iloc[0]:g} and f = {table['timestep_factor'].iloc[0]:g}. The gap is what is "
-            "left over in the last record before the loss. Kinetic energies are those of velocities half a step old, "
-            "which is part of the gap.",
+            "Work of the outer torque = kinetic + potential + dissipated energy, up to the first loss of mass, at the "
+            f"epsilon of production and f = {table['timestep_factor'].iloc[0]:g}. The gap is what is left over in the "
+            "last record before the loss. Kinetic energies are those of velocities half a step old, which is part of "
+            "the gap.",
             markdown_table(header, rows),
         ]
     )

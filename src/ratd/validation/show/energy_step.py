@@ -9,7 +9,7 @@ from ratd.validation.statistics import median_of
 
 GOAL = 1e-3
 """Greatest error of the energy that is asked for at the production step."""
-SMALL_STEP = 0.1
+SMALL_STEP = 0.125
 """Exponents are fitted up to this f."""
 PRODUCTION, COURSES = TIMESTEP_FACTOR, (0.5 * TIMESTEP_FACTOR, TIMESTEP_FACTOR)
 

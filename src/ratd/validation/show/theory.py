@@ -63,9 +63,9 @@ def tell(table):
             "## Theory",
             f"{plural(len(table), 'grain')} of "
             + ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
-            + f" nm at epsilon = {table['epsilon'].iloc[0]:g}, against two estimates that need no simulation: the "
-            "bound from the weakest cut through the contacts (exact for the trees of BA as they stand; a grain that "
-            "stretches is farther from the axis and parts below it, one that makes new contacts above it), and the "
+            + " nm at the epsilon of production, against two estimates that need no simulation: the bound from the "
+            "weakest cut through the contacts (exact for the trees of BA as they stand; a grain that stretches is "
+            "farther from the axis and parts below it, one that makes new contacts above it), and the "
             "angular velocity at which the mean tension at the mid-plane of a sphere equals the tensile strength of "
             "Tatsuuma (2019). Given are medians over the grains with their standard error and, in brackets, the range "
             "of 68 % of the grains.",
