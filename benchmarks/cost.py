@@ -1,16 +1,19 @@
 """Part (b): what every (material, type, size) of the config costs, and the core-hours of the whole paper.
 
-One grain of each cell, the first seed, is spun up `coarse` times faster than the config says: with epsilon times
-`coarse` (constant-epsilon law) or the angular acceleration times `coarse` (exponential law), and with records thinned
-by as much, so that the work for records stands in the same proportion to the steps. Under both laws the time to any
-angular velocity is inversely proportional to epsilon or the acceleration, and so is the number of steps. But each
-contact that breaks costs a search for fragments and pairs, however fast the grain is spun up. A second run, `FASTER`
-times faster still, tells the two apart: seconds = a/coarse + b gives a + b for the full run, next to growth and
-relaxation, which are measured by themselves.
+Under the constant-epsilon law, one grain of each cell, the first seed, is spun up `coarse` times faster than the config
+says, and with records thinned by as much, so that the work for records stands in the same proportion to the steps. The
+time to any angular velocity is inversely proportional to epsilon, and so is the number of steps. But each contact that
+breaks costs a search for fragments and pairs, however fast the grain is spun up. A second run, `FASTER` times faster
+still, tells the two apart: seconds = a/coarse + b gives a + b for the full run, next to growth and relaxation, which
+are measured by themselves. What this leaves out is that a grain spun up faster breaks later, and that its pieces leave
+at other angular velocities.
 
-What this leaves out is that a grain spun up faster breaks later, and that its pieces leave at other angular
-velocities. Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the
-error and correct the cells that are not run in full.
+Under Eq. 24 a grain of the drive literal breaks at an omega that depends on d omega/dt, so that a faster run tells
+little. There a run of `SHORT` steps tells how long a step takes, and theory how many there are: up to the omega at
+which a solid grain parts (`ratd.validation.literal.solid_omega`).
+
+Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the error and correct
+the cells that are not run in full.
 
 Each finished run is a row of ``cost_runs.csv``; a run with the same source and settings is not made again.
 """
@@ -23,13 +26,18 @@ import numpy as np
 from benchmarks import machine, tables
 from ratd import grow, spin_up
 from ratd.bound import cut_bound
+from ratd.engine.layout import DT
+from ratd.engine.state import new_state
 from ratd.errors import InputError
 from ratd.growth import RadiusDistribution
-from ratd.spinup import relax
+from ratd.spinup import FIRST_LOSS, relax
 from ratd.units import NM
+from ratd.validation.literal import solid_omega, spin_share
 
 FASTER = 3
 """How much faster still the second run of each cell is."""
+SHORT = 20_000
+"""Steps of a run that tells how long a step takes."""
 
 KEY = ("drive", "material", "type", "size_nm", "coarse", "pace", "timestep_factor", "records")
 """Columns that say what was run. Rows of another machine or another source are dropped at the start."""
@@ -70,7 +78,7 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
     ]
     _compile(plan, drives)
     for drive in drives:
-        for level in (FASTER * coarse[drive], coarse[drive], 1):
+        for level in (*_levels(plan, drive, coarse[drive]), 1):
             for cell in plan.cells:
                 if level == 1 and not _cheap(rows, plan, drive, cell, coarse[drive], full_below):
                     continue
@@ -82,14 +90,25 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
                 row = _settings(plan, drive, cell, level) | _run(plan, drive, cell, level, say) | about
                 rows.append({key: str(value) for key, value in row.items()})
                 tables.write(path, rows)
+                how = "a short run" if level == "short" else f"{level} times as fast"
                 say(
-                    f"cost: {drive} {' '.join(cell)} nm, {level} times as fast: {row['steps']} steps in "
-                    f"{row['seconds']:.1f} s, {row['us_per_step']:.2f} us per step"
+                    f"cost: {drive} {' '.join(cell)} nm, {how}: {row['steps']} steps in {row['seconds']:.1f} s, "
+                    f"{row['us_per_step']:.2f} us per step"
                 )
-    cells = project(rows, plan, drives, coarse, _bounds(out, plan, seeds, about, say))
+    cells = project(rows, plan, drives, coarse, _expected(out, plan, drives, seeds, about, say))
     tables.write(out / "cost_cells.csv", cells)
     tables.write(out / "cost_paper.csv", paper(cells, rows, plan, drives, coarse, about))
     return True
+
+
+def _by_epsilon(plan, drive):
+    """Whether a drive follows the constant-epsilon law, else Eq. 24."""
+    return plan.spin_up_of(drive)["epsilon"] is not None
+
+
+def _levels(plan, drive, coarse):
+    """Runs from which a full one is projected: how many times faster they are, or "short"."""
+    return (FASTER * coarse, coarse) if _by_epsilon(plan, drive) else ("short",)
 
 
 def _settings(plan, drive, cell, coarse):
@@ -120,23 +139,25 @@ def grain_of(plan, cell, seed):
 
 
 def arguments_of(plan, drive, kind, coarse):
-    """Arguments of `ratd.spin_up` for a run of a grain of some type `coarse` times as fast as the config says."""
+    """Arguments of `ratd.spin_up` for a run of a grain of some type `coarse` times as fast as the config says.
+
+    `coarse` may be "short" for a run of `SHORT` steps.
+    """
     spin = plan.spin_up_of(drive, kind)
-    arguments = {
-        "drive": drive,
-        "timestep_factor": spin["timestep_factor"],
-        "records": max(1, round(spin["records"] / coarse)),
-    }
+    names = ("epsilon", "angular_acceleration", "timestep_factor", "records", "max_steps")
+    arguments = {"drive": drive} | {name: spin[name] for name in names}
+    if coarse == "short":
+        return arguments | {"max_steps": SHORT}
     for name in ("epsilon", "angular_acceleration"):
         arguments[name] = None if spin[name] is None else spin[name] * coarse
-    return arguments
+    return arguments | {"records": max(1, round(spin["records"] / coarse))}
 
 
 def _compile(plan, drives):
     """Run something small, so that no row holds the time that compiling takes."""
     grain = grow("BAM2", 60 * NM, "q-S", 0)
     for drive in drives:
-        spin_up(grain, max_steps=1000, **arguments_of(plan, drive, grain.type, 1000))
+        spin_up(grain, **arguments_of(plan, drive, grain.type, "short"))
 
 
 def _run(plan, drive, cell, coarse, say):
@@ -158,11 +179,11 @@ def _run(plan, drive, cell, coarse, say):
     relaxed = time.process_time()
     failed = ""
     try:
-        run = spin_up(grain, max_steps=plan.spin_up_of(drive)["max_steps"], **arguments)
+        run = spin_up(grain, **arguments)
     except RuntimeError as error:
         # Far too fast a spin-up can break the integration; the report says so.
         failed = f"failed: {error}"
-        run = spin_up(grain, max_steps=1, **arguments)
+        run = spin_up(grain, **arguments | {"max_steps": 1})
     # spin_up relaxes the grain itself; that part does not scale with the pace.
     seconds = max(time.process_time() - relaxed - (relaxed - grown), 1e-6)
     return {
@@ -170,7 +191,7 @@ def _run(plan, drive, cell, coarse, say):
         "monomers": grain.n_monomers,
         "contacts": grain.n_contacts,
         "cut_bound": run.attrs["cut_bound"],
-        "work_by_bound": _work(grain),
+        "expected_steps": expected_steps(plan, drive, grain),
         "omega_end": float(run["omega"][-1]),
         "end": failed or run.attrs["end_reason"],
         "growth_seconds": grown - start,
@@ -193,10 +214,14 @@ def _cheap(rows, plan, drive, cell, coarse, full_below):
 
 
 def projected(rows, plan, drive, cell, coarse):
-    """Seconds and steps of the full run of a cell after its two fast ones; None where one of them is missing."""
-    fast, faster = (_find(rows, plan, drive, cell, level) for level in (coarse, FASTER * coarse))
-    if not (fast and faster) or fast["end"].startswith("failed"):
+    """Seconds and steps of the full run of a cell after its others; None where one of them is missing."""
+    found = [_find(rows, plan, drive, cell, level) for level in _levels(plan, drive, coarse)]
+    if not all(found) or found[-1]["end"].startswith("failed"):
         return None
+    if len(found) == 1:
+        steps = float(found[0]["expected_steps"])
+        return float(found[0]["us_per_step"]) * 1e-6 * steps, steps
+    faster, fast = found
     seconds = float(fast["seconds"])
     steps = int(fast["steps"])
     # a/coarse, which timings that scatter may not make less than nothing or more than all
@@ -206,34 +231,53 @@ def projected(rows, plan, drive, cell, coarse):
     return coarse * stepping + seconds - stepping, coarse * steps
 
 
-def _work(grain):
-    """A number that grows as the work of a run under the constant-epsilon law [s].
+def expected_steps(plan, drive, grain):
+    """Steps of a run up to where theory expects the grain to break.
 
-    Such a run has at most 2/(epsilon omega_1 dt) steps, each of which goes through all contacts, and costs about as
-    much as 50 contacts besides. epsilon and dt hardly differ within a cell.
+    Under the constant-epsilon law that is at the cut bound omega_c, about 1/(epsilon omega_c dt) steps; what comes
+    after takes as many again, or fewer. With the drive literal it is where a solid grain parts that holds to where the
+    first monomers leave.
     """
-    return (50 + grain.n_contacts) / cut_bound(grain)
+    spin = plan.spin_up_of(drive, grain.type)
+    state = new_state(
+        grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=spin["timestep_factor"]
+    )
+    dt, omega = state.scalar[DT], cut_bound(grain)
+    if spin["epsilon"] is not None:
+        return 1.0 / (spin["epsilon"] * omega * dt)
+    if drive == "literal":
+        omega, _ = solid_omega(FIRST_LOSS * omega, spin_share(grain), spin["angular_acceleration"], dt)
+    return omega / (spin["angular_acceleration"] * dt)
 
 
-def _bounds(out, plan, seeds, about, say):
-    """Work that the bound predicts for each cell: mean over some of its seeds, and standard error of the mean."""
+def _expected(out, plan, drives, seeds, about, say):
+    """How many times the work of its first seed the mean of a cell is expected to be, with standard error.
+
+    The work is taken as the number of steps times that of the contacts, and 50 for what else a step has to do.
+    """
     path = out / "cost_seeds.csv"
     key = {"seeds": str(min(seeds, len(plan.seeds))), "source": machine.source(), "machine": about["machine"]}
-    rows = [row for row in tables.read(path) if all(row[name] == value for name, value in key.items())]
-    result = {(row["material"], row["type"], row["size_nm"]): row for row in rows}
-    for material, kind, size in plan.cells:
-        cell = (material, kind, size)
-        if cell in result:
+    paces = {drive: plan.pace(drive) for drive in drives}
+    rows = [
+        row
+        for row in tables.read(path)
+        if all(row[name] == value for name, value in key.items()) and row["pace"] == paces.get(row["drive"])
+    ]
+    result = {(row["drive"], row["material"], row["type"], row["size_nm"]): row for row in rows}
+    for cell in plan.cells:
+        missing = [drive for drive in drives if (drive, *cell) not in result]
+        if not missing:
             continue
         grains = [grain_of(plan, cell, seed) for seed in plan.seeds[:seeds]]
-        work = np.array([_work(grain) for grain in grains])
-        error = work.std(ddof=1) / np.sqrt(len(work)) if len(work) > 1 else np.nan
-        row = {"material": material, "type": kind, "size_nm": size, **key}
-        row |= {"work_by_bound": work.mean(), "error": error}
-        result[cell] = {name: str(value) for name, value in row.items()}
+        for drive in missing:
+            work = np.array([(50 + grain.n_contacts) * expected_steps(plan, drive, grain) for grain in grains])
+            error = work.std(ddof=1) / np.sqrt(len(work)) if len(work) > 1 else np.nan
+            row = dict(zip(("material", "type", "size_nm"), cell, strict=True), drive=drive, pace=paces[drive], **key)
+            row |= {"mean_to_first": work.mean() / work[0], "error": error / work[0]}
+            result[drive, *cell] = {name: str(value) for name, value in row.items()}
     tables.write(path, list(result.values()))
-    say(f"cost: bounds of {key['seeds']} seeds a cell")
-    return {cell: (float(row["work_by_bound"]), float(row["error"])) for cell, row in result.items()}
+    say(f"cost: expected work of {key['seeds']} seeds a cell")
+    return {cell: (float(row["mean_to_first"]), float(row["error"])) for cell, row in result.items()}
 
 
 def ratios(rows, plan, drive, coarse):
@@ -241,26 +285,24 @@ def ratios(rows, plan, drive, coarse):
     table = []
     for cell in plan.cells:
         guess, full = projected(rows, plan, drive, cell, coarse), _find(rows, plan, drive, cell, 1)
-        if coarse > 1 and guess and full:
+        if guess and full:
             table.append([float(full["seconds"]), float(full["steps"]), *guess])
     return np.array(table).reshape(-1, 4)
 
 
-def project(rows, plan, drives, coarse, bounds):
+def project(rows, plan, drives, coarse, expected):
     """Cost of each cell with all its seeds, list of dict."""
     cells = []
     for drive in drives:
         table = ratios(rows, plan, drive, coarse[drive])
         correction = float(np.exp(np.log(table[:, 0] / table[:, 2]).mean())) if len(table) else 1.0
-        by_bound = plan.spin_up_of(drive)["epsilon"] is not None
         for cell in plan.cells:
-            fast, full = _find(rows, plan, drive, cell, coarse[drive]), _find(rows, plan, drive, cell, 1)
-            best = full or fast
+            full = _find(rows, plan, drive, cell, 1)
+            best = full or _find(rows, plan, drive, cell, _levels(plan, drive, coarse[drive])[-1])
             guess, guessed_steps = projected(rows, plan, drive, cell, coarse[drive]) or (np.nan, np.nan)
             seconds = float(full["seconds"]) if full else guess * correction
             steps = float(full["steps"]) if full else float(guessed_steps)
-            own = float(best["work_by_bound"])
-            factor, error = (part / own for part in bounds[cell]) if by_bound else (1.0, np.nan)
+            factor, error = expected[drive, *cell]
             fixed = float(best["growth_seconds"]) + float(best["relaxation_seconds"])
             cells.append(
                 {
@@ -303,7 +345,7 @@ def paper(cells, rows, plan, drives, coarse, about):
                 "drive": drive,
                 "pace": plan.pace(drive),
                 "timestep_factor": plan.spin_up_of(drive)["timestep_factor"],
-                "coarse": coarse[drive],
+                "coarse": _levels(plan, drive, coarse[drive])[-1],
                 "grains": len(own) * len(plan.seeds),
                 "cells_missing": missing,
                 "core_hours": float(total),

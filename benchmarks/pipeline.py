@@ -79,7 +79,7 @@ def _work(plan, size, seeds):
     """Time that growing and spinning up alone takes [s]."""
     start = time.perf_counter()
     for kind in plan.config["types"]:
-        arguments = arguments_of(plan, DRIVE, kind, 1) | {"max_steps": plan.spin_up_of(DRIVE)["max_steps"]}
+        arguments = arguments_of(plan, DRIVE, kind, 1)
         for seed in plan.seeds[:seeds]:
             grain = grain_of(plan, (plan.config["materials"][0], kind, size), seed)
             cut_bound(grain)

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from benchmarks.cost import FASTER
+from benchmarks.cost import FASTER, SHORT
 from benchmarks.scaling import LINEAR_FROM, exponent
 from ratd.errors import FileError
 from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
@@ -349,17 +349,18 @@ def _cost(out):
             rest = (1.0 - row.part_run_in_full) * row.core_hours
             low, high = (row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
         missing = f"**{row.cells_missing} cells are missing: their runs failed.** " if row.cells_missing else ""
-        seeds = (
-            f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
-            if row.pace.startswith("epsilon")
-            else "How seeds differ within a cell is not known for this law. "
+        seeds = f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
+        how = (
+            f"One grain a cell was run for {SHORT} steps, which tells how long a step takes; the number of steps is "
+            "that to the omega at which a solid grain parts. "
+            if row.coarse == "short"
+            else f"One grain a cell was run {row.coarse} and {FASTER * int(row.coarse)} times as fast as the config "
+            "says; what of its time grows with the steps was multiplied up, the rest was not. "
         )
         words.append(
             f"**Drive `{row.drive}`, {row.pace}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
             f"core-hours** for {row.grains} grains ({low:.1f} to {high:.1f} if all cells not run in full were off by "
-            f"that scatter together). One grain a cell was run {row.coarse} and {FASTER * row.coarse} times "
-            f"as fast as the config says; what of its time grows with the steps was multiplied up, the rest was not. "
-            f"{missing}{compared} {seeds}"
+            f"that scatter together). {how}{missing}{compared} {seeds}"
             f"Without the correction, first seeds only: {row.core_hours_uncorrected:.1f}. Of the total, "
             f"{100 * row.part_run_in_full:.0f} % belong to cells whose grain was run in full.\n"
         )

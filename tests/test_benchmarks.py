@@ -70,8 +70,8 @@ def test_cost_has_every_cell_in_both_paces_and_sums_up(results):
     cells = [(row["drive"], row["type"], row["coarse"]) for row in runs]
     assert cells == [
         (drive, kind, pace)
-        for drive in ("prescribed", "literal")
-        for pace in ("90", "30", "1")
+        for drive, paces in (("prescribed", ("90", "30", "1")), ("literal", ("short", "1")))
+        for pace in paces
         for kind in ("BA", "BAM1", "BAM2")
     ]
     assert all(int(row["steps"]) > 0 and float(row["seconds"]) > 0.0 for row in runs)
@@ -108,8 +108,11 @@ def test_projection_multiplies_only_what_grows_with_the_steps(benchmarks, monkey
     runs = {10: {"seconds": "3.0", "steps": "1000", "end": ""}, 30: {"seconds": "1.4", "steps": "330", "end": ""}}
     monkeypatch.setattr(cost, "_find", lambda rows, plan, drive, cell, level: runs.get(level))
     # seconds = 24/coarse + 0.6
+    monkeypatch.setattr(cost, "_by_epsilon", lambda plan, drive: drive == "prescribed")
     assert cost.projected([], None, "prescribed", (), 10) == pytest.approx((24.6, 10000))
     assert cost.projected([], None, "prescribed", (), 30) is None
+    runs["short"] = {"us_per_step": "5", "expected_steps": "2e6", "end": ""}
+    assert cost.projected([], None, "literal", (), 10) == pytest.approx((10.0, 2e6))
 
 
 def test_scaling_has_every_number_and_memory_beyond_the_state(results):
