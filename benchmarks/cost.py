@@ -10,7 +10,7 @@ at other angular velocities.
 
 Under Eq. 24 a grain of the drive literal breaks at an omega that depends on d omega/dt, so that a faster run tells
 little. There a run of `SHORT` steps tells how long a step takes, and theory how many there are: up to the omega at
-which a solid grain parts (`ratd.validation.literal.solid_omega`).
+which a solid grain parts (`ratd.solid.solid_omega`).
 
 Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the error and correct
 the cells that are not run in full.
@@ -30,9 +30,9 @@ from ratd.engine.layout import DT
 from ratd.engine.state import new_state
 from ratd.errors import InputError
 from ratd.growth import RadiusDistribution
+from ratd.solid import solid_omega, spin_share
 from ratd.spinup import FIRST_LOSS, relax
 from ratd.units import NM
-from ratd.validation.literal import solid_omega, spin_share
 
 FASTER = 3
 """How much faster still the second run of each cell is."""

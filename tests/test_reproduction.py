@@ -27,7 +27,7 @@ from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
 from ratd.shape import porosity, semi_axes
-from ratd.validation.literal import solid_omega
+from ratd.solid import solid_omega
 from synthetic_runs import make_table
 
 ROOT = Path(__file__).parents[1]

@@ -12,7 +12,9 @@ import ratd
 from ratd import schema
 from ratd.markdown import markdown_table, measured
 from ratd.materials import MATERIALS
+from ratd.solid import solid_omega, spin_share
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
+from ratd.statistics import median_of
 from ratd.validation import (
     convergence,
     energy,
@@ -37,7 +39,6 @@ from ratd.validation.show import literal as show_literal
 from ratd.validation.show import pull_off as show_pull_off
 from ratd.validation.show import theory as show_theory
 from ratd.validation.show.report import report
-from ratd.validation.statistics import median_of
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
 
 CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
@@ -311,19 +312,19 @@ def test_the_spins_share_of_a_pair():
     """Two equal spheres that touch: 2 x 2/5 m a^2 over that and 2 m a^2."""
     a = 20e-9
     pair = ratd.Grain([[-a, 0, 0], [a, 0, 0]], [a, a], "q-S")
-    assert literal.spin_share(pair) == pytest.approx(0.8 / 2.8, rel=1e-9)
+    assert spin_share(pair) == pytest.approx(0.8 / 2.8, rel=1e-9)
 
 
 def test_a_solid_grain_under_the_printed_equations():
     """Fourth root, third root, and the spins alone, in units in which d omega/dt = dt = 1."""
-    third = [literal.solid_omega(threshold, 1e-9, 1.0, 1.0)[0] for threshold in (1e4, 1e5)]
+    third = [solid_omega(threshold, 1e-9, 1.0, 1.0)[0] for threshold in (1e4, 1e5)]
     assert third[1] == pytest.approx(third[0], rel=1e-3)
-    assert literal.solid_omega(1e-5, 1e-9, 1.0, 1.0)[0] == pytest.approx(4e-5**0.25, rel=1e-2)
-    omega, backwards = literal.solid_omega(1e-3, 0.2, 1.0, 1.0)
+    assert solid_omega(1e-5, 1e-9, 1.0, 1.0)[0] == pytest.approx(4e-5**0.25, rel=1e-2)
+    omega, backwards = solid_omega(1e-3, 0.2, 1.0, 1.0)
     assert omega == pytest.approx(1e-3 / 0.2, rel=1e-3) and not backwards
-    once, backwards = literal.solid_omega(1e8, 0.1, 1e14, 1e-12)
-    assert backwards and literal.solid_omega(1e8, 0.1, 3e14, 3e-12)[0] == pytest.approx(once, rel=1e-6)
-    assert np.isnan(literal.solid_omega(np.nan, 0.1, 1.0, 1.0)[0])
+    once, backwards = solid_omega(1e8, 0.1, 1e14, 1e-12)
+    assert backwards and solid_omega(1e8, 0.1, 3e14, 3e-12)[0] == pytest.approx(once, rel=1e-6)
+    assert np.isnan(solid_omega(np.nan, 0.1, 1.0, 1.0)[0])
 
 
 def test_literal_drive():

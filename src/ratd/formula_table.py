@@ -3,7 +3,7 @@
 import pandas as pd
 
 from ratd.parameters import MARKS, beside_own
-from ratd.validation.statistics import median_of
+from ratd.statistics import median_of
 
 __all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table"]
 
@@ -76,7 +76,7 @@ def formula_effects(table, mark):
     -------
     pandas.DataFrame
         One row a formula and type (``all`` for all of them together): formula, type, and what `median_of` of
-        ratd.validation.statistics gives for the ratio to the consistent model.
+        ratd.statistics gives for the ratio to the consistent model.
     """
     rows = []
     for formula, part in table[table["formula"] != OWN].groupby("formula", sort=False):

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.errors import InputError
-from ratd.validation.statistics import median_of
+from ratd.statistics import median_of
 
 __all__ = ["MARKS", "PARAMETERS", "PARAMETER_COLUMNS", "beside_own", "effect", "parameter_table", "ways"]
 
@@ -127,7 +127,7 @@ def effect(table, parameter, mark):
     Returns
     -------
     pandas.DataFrame
-        One row a type and value, sorted: type, value [SI], and what `median_of` of ratd.validation.statistics gives for
+        One row a type and value, sorted: type, value [SI], and what `median_of` of ratd.statistics gives for
         the ratio to the grain as it is.
     """
     here = table[table["parameter"].isin((OWN, parameter))]

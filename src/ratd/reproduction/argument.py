@@ -8,10 +8,10 @@ from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
+from ratd.solid import solid_omega
+from ratd.statistics import median_of
 from ratd.units import NM
-from ratd.validation.literal import solid_omega
 from ratd.validation.show import lammps, literal
-from ratd.validation.statistics import median_of
 
 INTRODUCTION = (
     "Four checks stand beside the drive `prescribed` that do not rest on its spin-ups: two monomers, for which the "
@@ -244,7 +244,7 @@ def solid_prediction(table, acceleration):
     Returns
     -------
     numpy.ndarray
-        See `ratd.validation.literal.solid_omega`; NaN where something is not known.
+        See `ratd.solid.solid_omega`; NaN where something is not known.
     """
     columns = table[["omega_disr", "spin_share", "literal_step"]].to_numpy(float)
     return np.array(

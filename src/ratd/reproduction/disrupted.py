@@ -28,8 +28,8 @@ from ratd.reproduction.text import (
     with_error,
 )
 from ratd.schema import END_REASONS
+from ratd.statistics import median_of
 from ratd.units import NM
-from ratd.validation.statistics import median_of
 
 LEVEL = (
     "prescribed: a grain that turns as a whole cannot hold the printed omega (What the contacts can hold). literal: it "

@@ -20,8 +20,8 @@ from ratd.reproduction.text import (
     range_answer,
     with_error,
 )
+from ratd.statistics import median_of
 from ratd.units import NM
-from ratd.validation.statistics import median_of
 
 POROSITY_REASON = (
     "With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a solid sphere P = -0.84. Single grains spread, small ones "

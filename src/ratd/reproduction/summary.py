@@ -9,8 +9,8 @@ from ratd.reproduction import grown
 from ratd.reproduction.argument import calibrated_grains
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.text import between, number, with_error
+from ratd.statistics import median_of
 from ratd.validation.show import lammps
-from ratd.validation.statistics import median_of
 
 
 def summary(data, rows):

@@ -6,8 +6,8 @@ from ratd.drives import SPIN_UP_LAWS
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
 from ratd.markdown import markdown_table, measured
 from ratd.spinup import EPSILON, FIRST_LOSS
+from ratd.statistics import median_of
 from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
-from ratd.validation.statistics import median_of
 
 GOAL = 0.03
 """Shift of a mark that is allowed."""

@@ -5,7 +5,7 @@ import numpy as np
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
 from ratd.markdown import markdown_table, measured
 from ratd.spinup import TIMESTEP_FACTOR
-from ratd.validation.statistics import median_of
+from ratd.statistics import median_of
 
 GOAL = 1e-3
 """Greatest error of the energy that is asked for at the production step."""

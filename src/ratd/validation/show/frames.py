@@ -4,7 +4,7 @@ import numpy as np
 
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
 from ratd.markdown import markdown_table, measured
-from ratd.validation.statistics import median_of
+from ratd.statistics import median_of
 
 FIRST_ORDER = (
     "It is near 1 here: the engine turns the spin with the frame after the whole kick by the torques, instead of "

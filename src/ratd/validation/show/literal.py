@@ -4,8 +4,9 @@ import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
 from ratd.markdown import markdown_table, measured
-from ratd.validation.literal import EXACT_END, MARKS, solid_omega
-from ratd.validation.statistics import median_of
+from ratd.solid import solid_omega
+from ratd.statistics import median_of
+from ratd.validation.literal import EXACT_END, MARKS
 
 MARK = "omega_mass_75"
 LAW = 1 / 3
@@ -135,7 +136,7 @@ def tell(table):
             "With the Coriolis force at the velocity half a step before, a solid grain is turned backwards: Omega, its "
             "angular velocity in the inertial frame, obeys d Omega/dt = s d omega/dt - (1 - s) omega "
             "(omega - Omega)² dt with s the share of the spins, and it parts where |Omega| is the consistent threshold "
-            "(`ratd.validation.literal.solid_omega`). omega/q then depends on s and on threshold/q alone. omega ~ q, "
+            "(`ratd.solid.solid_omega`). omega/q then depends on s and on threshold/q alone. omega ~ q, "
             "the exponents 1/3 and -1/3, would hold for a threshold far above q; far below, they are 1/4 and -1/4. "
             "They are fitted within each grain, to the runs and to what the solid grain gives for the same runs; "
             "medians over the grains with standard error, in brackets the range of 68 % of the runs.",

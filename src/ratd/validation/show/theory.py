@@ -4,7 +4,7 @@ import numpy as np
 
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
 from ratd.markdown import markdown_table, measured
-from ratd.validation.statistics import median_of
+from ratd.statistics import median_of
 from ratd.validation.theory import MARKS
 
 ESTIMATES = {"cut_bound": "cut bound [rad s$^{-1}$]", "midplane": "mean tension = Tatsuuma 2019 [rad s$^{-1}$]"}
