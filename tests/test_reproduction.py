@@ -1,5 +1,6 @@
 """The reproduction document: printed values, bounds, rows, and the whole text from a folder of made-up data."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from ratd.reproduction import figures
 from ratd.reproduction.argument import printed_porosity, solid_parts, solid_prediction
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.collect import Collection
-from ratd.reproduction.data import Data
+from ratd.reproduction.data import GROWN, Data
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
@@ -108,7 +109,8 @@ def test_the_same_data_give_the_same_bytes(folder, text):
 
 def test_figures_give_the_same_bytes(folder, tmp_path):
     for k in range(2):
-        save(figures.bound(Data(str(folder)).tables), tmp_path / f"{k}.png")
+        data = Data(str(folder))
+        save(figures.bound(data.grown, data.tables), tmp_path / f"{k}.png")
     assert (tmp_path / "0.png").read_bytes() == (tmp_path / "1.png").read_bytes()
 
 
@@ -264,6 +266,24 @@ def test_collecting_again_gives_the_same_bytes_and_leaves_nothing_old(tmp_path):
 def test_a_folder_without_config_has_nothing_to_draw(tmp_path):
     data = Data(str(tmp_path))
     assert data.files == data.drives == data.figures == data.further_figures == []
+
+
+def test_what_needs_no_spin_up_is_said_of_all_grown_grains(folder, tmp_path):
+    """A grain that no drive spun up counts in what is said of grains at rest, and in nothing else."""
+    data = Data(str(shutil.copytree(folder, tmp_path / "data")))
+    before = report(data, "reproduction")
+    assert "figure2" not in data.figures and len(data.grown) == max(map(len, data.tables.values()))
+    more = data.grown.assign(drive="", omega_disr=np.nan)
+    more = pd.concat([more, more.assign(seed=more["seed"] + 100)], ignore_index=True)
+    io.write(tmp_path / "data" / GROWN, table_dataset(more, "grain"), "table")
+    data = Data(data.folder)
+    assert "figure2" in data.figures and data.figure_files(2) == {"data": [data.path(GROWN)]}
+    text = report(data, "reproduction")
+    assert f"{len(more)} grains were grown" in text
+    known = int(ratios(more)["printed_over_bound"].notna().sum())
+    assert f"of {known} grains" in text and f"of {known} grains" not in before
+    changed = set(text.splitlines()) ^ set(before.splitlines())
+    assert not [line for line in changed if "omega_disr, drive `" in line]
 
 
 def test_figures_are_drawn_from_what_is_there(folder):

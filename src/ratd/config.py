@@ -448,6 +448,10 @@ class Plan:
             self.file(path, cell, seeds=block) for cell in self.cells_of(drive) for block in self.blocks(cell, drive)
         ]
 
+    def all_files(self, path):
+        """Files of the grown grains of all cells with all seeds, see `files`; `seeds.fewer` leaves none out."""
+        return [self.file(path, cell, seeds=block) for cell in self.cells for block in self._split(self.seeds, cell)]
+
     def grown_files(self, path, drive):
         """Files of the grown grains that a drive spins up, see `files`; they may hold more seeds than it wants."""
         return [

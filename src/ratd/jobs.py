@@ -21,6 +21,7 @@ WRITES = {
     "spin_up_cuda": ("spinup",),
     "disrupt": ("disruption",),
     "ensemble": ("table", "cells", "fit"),
+    "grown": ("table",),
     "composition": ("table1", "table2"),
     "pairs": ("pairs",),
     "reproduction_data": ("fragments",),

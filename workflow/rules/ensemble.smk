@@ -41,6 +41,32 @@ rule ensemble:
         "../scripts/ensemble.py"
 
 
+# All grains of the config as grown, those too that `seeds.fewer` leaves out: what needs no spin-up is known of them.
+rule grown:
+    input:
+        PLAN.all_files("<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"),
+    output:
+        table="<results>/ensemble/grown.nc",
+        table_csv="<results>/ensemble/grown.csv",
+    log:
+        "<results>/logs/ensemble/grown.log",
+    benchmark:
+        "<results>/benchmarks/ensemble/grown.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    params:
+        code=CODE["grown"],
+        settings={},
+    message:
+        "Tabulate the grown grains"
+    script:
+        "../scripts/grown.py"
+
+
 # What the monomers are made of: nothing in the config decides it.
 rule composition:
     output:

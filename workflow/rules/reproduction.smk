@@ -14,6 +14,7 @@ rule reproduction_data:
             drive=PLAN.config["drives"],
             name=["grains", "table3"],
         ),
+        grown=rules.grown.output.table,
         runs=rules.spinups.input,
         grains=rules.figure1.input,
         pairs=[

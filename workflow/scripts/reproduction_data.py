@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ratd.jobs import Job
 from ratd.reproduction.collect import Collection
+from ratd.reproduction.data import GROWN
 from ratd.validation import lammps, literal
 
 with Job(snakemake) as job:
@@ -16,6 +17,7 @@ with Job(snakemake) as job:
             collection.copy(source, f"ensemble/{drive}/{name}.nc", f"{what}, drive {drive}")
         collection.runs([path for path in files.runs if f"/spinup/{drive}/" in path], drive)
         job.log.info(f"drive {drive}: collected")
+    collection.copy(files.grown, GROWN, "all grains of the config as grown")
     for path in files.pairs:
         collection.copy(path, f"pairs/{Path(path).name}", f"pairs of Fig. 10, {Path(path).stem}")
     if files.grains:

@@ -48,9 +48,8 @@ def figure2(table, drive=None):
     """
     drive = drive_of(table) if drive is None else drive
     grains, materials = plural(len(table), "grain"), plural(table["material"].nunique(), "material")
-    figure = new_figure(
-        TWO_COLUMNS, 0.68 * TWO_COLUMNS, f"{grains} of {materials} as grown, at rest ({drive_text(drive)})"
-    )
+    known = f" ({drive_text(drive)})" if drive else ""
+    figure = new_figure(TWO_COLUMNS, 0.68 * TWO_COLUMNS, f"{grains} of {materials} as grown, at rest{known}")
     panels = figure.subplots(2, 2, sharex=True)
     cells = cell_statistics(table, by=("type", "a_eff"))
     style = type_style(cells["type"])

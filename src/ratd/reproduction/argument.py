@@ -24,7 +24,7 @@ INTRODUCTION = (
 def bound_section(data):
     """The bound from cuts and the tensile strength, beside Table 3."""
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
-    first = max(tables.values(), key=len)
+    first = ratios(data.grown, data.plan.materials)
     rows = []
     for kind in dict.fromkeys(first["type"]):
         large = first["a_eff"] >= SPLIT * (1 - 1e-9)
@@ -114,8 +114,7 @@ def lammps_section(data):
 
 def _printed_of(data, material):
     """(type, size in nm, seed) -> omega of Eq. 33 with Table 3, for the grains of one material."""
-    grains = max(data.tables.values(), key=len)
-    grains = grains[grains["material"] == material]
+    grains = data.grown[data.grown["material"] == material]
     keys = zip(grains["type"], _whole_nm(grains), grains["seed"].astype(int), strict=True)
     return dict(zip(keys, table3_omega(grains, data.plan.materials), strict=True))
 
@@ -294,9 +293,8 @@ def formula_section(data):
             "model:"
         )
         parts.append(markdown_table(["formula as printed", "omega_disr", "omega at 25 % mass loss", "runs"], rows))
-    grains = max(data.tables.values(), key=len)
     rows = []
-    for kind, part in grains.groupby("type", sort=False):
+    for kind, part in data.grown.groupby("type", sort=False):
         mean = [mean_and_error(part["porosity"]), mean_and_error(printed_porosity(part["porosity"]))]
         rows.append([kind, *(with_error(*own) for own in mean), str(len(part))])
     parts.append(

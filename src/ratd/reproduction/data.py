@@ -16,6 +16,7 @@ from ratd.fragmentation import fragment_table
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
 MATERIALS_SCHEMA = "config/schema/materials.schema.yaml"
+GROWN = "grown.nc"
 PARAMETERS = "parameters_{drive}.nc"
 CALIBRATION = "calibration.nc"
 FORMULAE = "formulae.nc"
@@ -28,7 +29,6 @@ FROM_RESULTS = {
 STUDIES = ("lammps", "literal")
 """Checks of the validation that the document takes numbers from."""
 DRIVEN_FIGURES = {
-    2: {"table": "ensemble/{drive}/grains.nc"},
     4: {"runs": "figure4/{drive}.nc"},
     5: {"runs": "figure5/{drive}.nc"},
     6: {"table": "ensemble/{drive}/grains.nc"},
@@ -37,7 +37,7 @@ DRIVEN_FIGURES = {
     9: {"table": PARAMETERS},
 }
 """Number of a figure that has a drive -> the data that it is drawn from, below the folder."""
-COMMON_FIGURES = {1: "figure1/*.nc", 10: "pairs/*.nc"}
+COMMON_FIGURES = {1: "figure1/*.nc", 2: GROWN, 10: "pairs/*.nc"}
 """Number of a figure without a drive -> pattern of its data."""
 
 
@@ -128,6 +128,13 @@ class Data:
     def tables(self):
         """Drive -> table of its grains."""
         return self._each_drive("ensemble/{drive}/grains.nc", io.read_table)
+
+    @cached_property
+    def grown(self):
+        """Table of the grains as grown: of all of them where that is part of the data, else of those of a drive."""
+        if self.has(GROWN):
+            return io.read_table(self.path(GROWN))
+        return max(self.tables.values(), key=len)
 
     @cached_property
     def fits(self):

@@ -193,11 +193,13 @@ def _shapes(data):
 
         return evaluate
 
+    # the shape of a grain hardly changes when it comes to rest
+    grown = data.grown.assign(**{f"axis_{name}_start": data.grown[f"axis_{name}"] for name in "abc"})
     early = "A grain that breaks at its weakest cut keeps its shape up to then."
     return [
-        drive_rows("oblate_start_200", tables, oblate("start", half, 200)),
-        *(drive_rows(f"oblate_start_{size}", tables, oblate("start", below, size)) for size in (350, 500)),
-        drive_rows("c_over_b", tables, slender),
+        drive_rows("oblate_start_200", {"": grown}, oblate("start", half, 200)),
+        *(drive_rows(f"oblate_start_{size}", {"": grown}, oblate("start", below, size)) for size in (350, 500)),
+        drive_rows("c_over_b", {"": grown}, slender),
         drive_rows("oblate_disr", tables, oblate("disr", above, types=BAM), early),
         drive_rows("oblate_disr_BA", tables, oblate("disr", below, 200, ("BA",))),
         drive_rows("b_over_a", tables, flattest, early),

@@ -28,11 +28,13 @@ STRENGTH_LOOK = {"color": GREY, "marker": "v"}
 
 
 @styled
-def bound(tables, materials=None):
+def bound(grown, tables, materials=None):
     """Angular velocities over the cut bound of the same grain against size, a panel a type.
 
     Parameters
     ----------
+    grown : pandas.DataFrame
+        The grown grains, for what needs no spin-up.
     tables : dict of str to pandas.DataFrame
         Drive -> its grains.
     materials : optional
@@ -45,7 +47,7 @@ def bound(tables, materials=None):
         and omega_disr of each drive.
     """
     tables = {drive: ratios(table, materials) for drive, table in tables.items()}
-    first = max(tables.values(), key=len)
+    first = ratios(grown, materials)
     types = list(dict.fromkeys(first["type"]))
     figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, "angular velocities over the cut bound of the same grain")
     panels = figure.subplots(1, len(types), sharex=True, sharey=True, squeeze=False)[0]

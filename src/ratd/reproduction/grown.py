@@ -32,9 +32,9 @@ FACTOR = 0.02
 
 
 def rows(data):
-    """Rows that need no spin-up, list of Row; those of grains from the table with the most of them."""
+    """Rows that need no spin-up, list of Row."""
     result = [_coverage(data), *_step(data)]
-    table = max(data.tables.values(), key=len)
+    table = data.grown
     cells = cell_statistics(table, by=("type", "a_eff"))
     mean = mean_and_error(table["mean_monomer_radius"] / NM)
     printed = PRINTED["mean_radius"]

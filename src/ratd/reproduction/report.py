@@ -85,9 +85,11 @@ def _coverage(data):
             counts = size_key(part["a_eff"]).value_counts()
             rows.append([drive, kind, *(str(counts.get(size, 0)) for size in sizes), str(len(part))])
     text = (
-        f"{total} spin-ups, the paper has 2970 grains: 3 materials, 3 types, 11 sizes from 50 to 550 nm, 30 seeds, "
-        "that is 90 grains of each type and size. The table counts ours. Cells that are missing here are missing in "
-        "every mean, range and fit below, and for the large grains, which differ most, that matters."
+        f"{len(data.grown)} grains were grown, and {total} spin-ups made. The paper has 2970 grains: 3 materials, 3 "
+        "types, 11 sizes from 50 to 550 nm, 30 seeds, that is 90 grains of each type and size. What is said of grains "
+        "at rest, and of what their contacts can hold, is said of all that were grown. The table counts the spin-ups. "
+        "Cells that are missing here are missing in every mean, range and fit of omega_disr, and for the large "
+        "grains, which differ most, that matters."
     )
     return f"{text}\n\n{markdown_table(['drive', 'type', *(f'{s / 1e3:g} nm' for s in sizes), 'all'], rows)}"
 

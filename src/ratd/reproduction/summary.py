@@ -36,7 +36,7 @@ def summary(data, rows):
             "grain from the drive `prescribed`"
         )
         lines.append(_level(name, calibrated))
-    lines += [_bound(max(tables.values(), key=len)), *_lammps(data)]
+    lines += [_bound(ratios(data.grown, data.plan.materials)), *_lammps(data)]
     lines += [line for drive, table in tables.items() for line in _shape_of_law(drive, table, data.plan.materials)]
     lines += [_composition(), *_grains(data)]
     return "\n".join(f"- {line}" for line in lines)
