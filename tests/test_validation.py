@@ -202,7 +202,16 @@ def test_slow_spin_ups_have_tables_of_their_own(convergence_rows):
         head = words.index(f"{mark} by type and size:", words.index(next(w for w in words if "6 grains" in w)))
         assert "| BA | 300 | 3 | – | – | 1 | 1.06 | 1.12 |" in words[head + 1]
         assert "| BAM1 | 300 | 3 | 1 | 1.02 | 1.12 | – | – |" in words[head + 1]
-    assert "omega_mass_75 in 1 of 2 cells (BA 300 nm 1.06)" in text
+    assert "| BA | 0.02 | 3 | 1.06, off | 1.06, off | 1.06, off |" in text
+    assert "| BAM1 | 0.005 | 3 | 1.02, within | 1.02, within | 1.02, within |" in text
+
+
+@pytest.mark.parametrize(
+    ("median", "error", "word"),
+    [(1.01, 0.01, "within"), (0.99, 0.03, "open"), (1.04, 0.02, "open"), (0.9, 0.02, "off"), (1.0, np.nan, "within")],
+)
+def test_a_median_is_judged_together_with_its_error(median, error, word):
+    assert show_convergence.within({"median": median, "error": error}, 0.03) == word
 
 
 def test_theory(tmp_path):

@@ -183,7 +183,7 @@ def tell(table):
             "run of the same grain; they have no part in the medians above:"
         )
         words += [_cells(rows, mark) for mark in IN_CELLS]
-    words.append(_cells_within(rows))
+    words.append(_production(rows))
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -219,21 +219,34 @@ def _cells(rows, mark):
     return f"{mark} by type and size:\n\n" + markdown_table(header, lines)
 
 
-def _cells_within(rows, goal=GOAL):
-    """A sentence: which cells are off by more than the goal at the epsilon of production."""
+def _production(rows, goal=GOAL):
+    """A table: marks at the epsilon of production over those of the slowest run, and whether they are near enough."""
     here = rows[np.isclose(rows["x"], rows["type"].map(EPSILON))]
     if not len(here):
         return "No run has the epsilon of production."
-    parts = []
-    for mark in IN_CELLS:
-        found = [(cell, median_of(part[mark], part["grain"])) for cell, part in _by_cell(here)]
-        far = [
-            f"{kind} {size:g} nm {measured(s['median'], s['error'])}"
-            for (kind, size), s in found
-            if abs(s["median"] - 1.0) > goal
-        ]
-        parts.append(f"{mark} in {len(far)} of {len(found)} cells" + (f" ({', '.join(far)})" if far else ""))
-    return f"At the epsilon of production the median is off by more than {100 * goal:g} %: " + "; ".join(parts) + "."
+    parts = list(here.groupby("type"))
+    if len(parts) > 1:
+        parts.append(("all", here))
+    lines = []
+    for kind, part in parts:
+        cells = [kind, f"{EPSILON[kind]:g}" if kind in EPSILON else "", part["grain"].nunique()]
+        for mark in IN_CELLS:
+            s = median_of(part[mark], part["grain"])
+            cells.append(f"{measured(s['median'], s['error'])}, {within(s, goal)}")
+        lines.append(cells)
+    return (
+        "Marks at the epsilon of production over those of the slowest run, all sizes of a type together, and whether "
+        f"they are within {100 * goal:g} %, or left open by the standard error:\n\n"
+        + markdown_table(["type", "epsilon", "grains", *IN_CELLS], lines)
+    )
+
+
+def within(statistic, goal=GOAL):
+    """Whether a median is within the goal of 1, beyond it, or so near to its edge that its error leaves it open."""
+    off = abs(statistic["median"] - 1.0)
+    if not off <= goal:
+        return "off" if off - statistic["error"] > goal else "open"
+    return "open" if off + statistic["error"] > goal else "within"
 
 
 def _laws(table):
