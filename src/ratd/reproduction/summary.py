@@ -36,7 +36,8 @@ def summary(data, rows):
             "grain from the drive `prescribed`"
         )
         lines.append(_level(name, calibrated))
-    lines += [_bound(ratios(data.grown, data.plan.materials)), *_lammps(data)]
+    lines += [_bound(ratios(data.grown, data.plan.materials)), *_flattening("the bound", data.grown, "cut_bound")]
+    lines += _lammps(data)
     lines += [line for drive, table in tables.items() for line in _shape_of_law(drive, table, data.plan.materials)]
     lines += [_composition(), *_grains(data)]
     return "\n".join(f"- {line}" for line in lines)
@@ -89,17 +90,7 @@ def _lammps(data):
 
 def _shape_of_law(drive, table, materials):
     """How omega_disr depends on size, and what predicts it."""
-    lines = []
-    steep = [
-        f"{row['type']} {with_error(row['above'], row['above_error'])}"
-        for _, row in slopes(table).iterrows()
-        if np.isfinite(row["above"])
-    ]
-    if steep:
-        lines.append(
-            f"**Flattening, drive `{drive}`**: above 300 nm omega_disr goes with the power of size {', '.join(steep)}; "
-            "the paper finds 0."
-        )
+    lines = _flattening(f"omega_disr, drive `{drive}`,", table, "omega_disr")
     found = cross_validation(table, materials=materials)
     own = found[(found["type"] == "all") & found["scatter"].notna()]
     if len(own):
@@ -111,6 +102,20 @@ def _shape_of_law(drive, table, materials):
             f"{with_error(best['scatter'], best['error'])}."
         )
     return lines
+
+
+def _flattening(name, table, mark):
+    steep = [
+        f"{row['type']} {with_error(row['above'], row['above_error'])}"
+        for _, row in slopes(table, mark).iterrows()
+        if np.isfinite(row["above"])
+    ]
+    if not steep:
+        return []
+    return [
+        f"**Flattening**: above 300 nm {name} goes with the power of size {', '.join(steep)}; the paper finds 0 for "
+        "omega_disr."
+    ]
 
 
 def _composition():
