@@ -283,7 +283,7 @@ def test_epsilon_is_one_for_all_types_or_one_for_each():
         assert same.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == 0.05
     assert each.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
     assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1e+15 rad/s²"
-    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.01 (BAM2)"
+    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.005 (BAM2)"
 
 
 def test_snapshots_concern_the_block_of_the_grain_only():

@@ -47,7 +47,7 @@ RESIDUAL = 1e-3
 """A grain is relaxed when no net force exceeds this part of the least pull-off force in it."""
 RELAXATION_STEPS = 50
 RELAXATION_ROUNDS = 20_000
-EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.01}
+EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.005}
 TIMESTEP_FACTOR = 0.125
 """What a spin-up takes when it is not told otherwise: within 3 % of the limit of a slow spin-up and a short step
 (docs/validation.md). A grain of no known type takes the least epsilon."""
