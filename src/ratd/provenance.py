@@ -14,7 +14,9 @@ and decides no number, so it stays outside the hash. What it does decide, the va
 import ast
 import hashlib
 import json
+import os
 import tokenize
+from functools import cache
 from importlib import metadata
 from io import StringIO
 from pathlib import Path
@@ -48,7 +50,7 @@ def module_path(name, root=_ROOT):
     below = root.joinpath(*name.split(".")[1:])
     for path in (below / "__init__.py", below.with_suffix(".py")):
         # the case must agree as well: on a file system that ignores it, `ratd.Grain` is not the module `ratd.grain`
-        if path.is_file() and path.name in {entry.name for entry in path.parent.iterdir()}:
+        if path.is_file() and path.name in os.listdir(path.parent):
             return path
     return None
 
@@ -77,10 +79,10 @@ def imported_modules(source, name=None, root=_ROOT):
         If it imports from a module of ratd that does not exist.
     """
     found = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in _imports(source):
         if isinstance(node, ast.Import):
             modules = candidates = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = node.module or ""
             if node.level:
                 package = name if module_path(name, root).name == "__init__.py" else name.rpartition(".")[0]
@@ -88,8 +90,6 @@ def imported_modules(source, name=None, root=_ROOT):
                     package = package.rpartition(".")[0]
                 base = f"{package}.{base}" if base else package
             modules, candidates = [base], [base, *(f"{base}.{alias.name}" for alias in node.names)]
-        else:
-            continue
         for module in modules:
             if module.split(".")[0] == "ratd" and module_path(module, root) is None:
                 raise InputError(f"{name or 'a script'} imports {module}, but there is no such module")
@@ -105,6 +105,14 @@ def imported_modules(source, name=None, root=_ROOT):
     return found
 
 
+# Snakemake takes the hashes of all scripts at each start; most of them are of the same modules.
+@cache
+def _imports(source):
+    """Statements of import in a piece of Python source, list of ast.Import and ast.ImportFrom."""
+    return [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Import | ast.ImportFrom)]
+
+
+@cache
 def essential_text(source):
     """Python source without what decides no number: comments, docstrings, blank lines.
 
