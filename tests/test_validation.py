@@ -206,6 +206,17 @@ def test_slow_spin_ups_have_tables_of_their_own(convergence_rows):
     assert "| BAM1 | 0.005 | 3 | 1.02, within | 1.02, within | 1.02, within |" in text
 
 
+def test_shift_from_the_limit_is_that_of_the_law_it_is_made_with():
+    power, slope = show_convergence.LAG_POWER, 0.8
+    rows = [
+        epsilon_row("epsilon_fine", seed, epsilon, (1 + seed) * 1e7 * (1 + slope * epsilon**power), kind="BAM1")
+        for seed in range(4)
+        for epsilon in (0.001, 0.002, 0.004)
+    ]
+    found = show_convergence.shift_from_limit(show_convergence.ratios(pd.DataFrame(rows), "epsilon_fine"), "omega_disr")
+    assert found["median"] == pytest.approx(slope * EPSILON["BAM1"] ** power, rel=0.02) and found["n"] == 4
+
+
 @pytest.mark.parametrize(
     ("median", "error", "word"),
     [(1.01, 0.01, "within"), (0.99, 0.03, "open"), (1.04, 0.02, "open"), (0.9, 0.02, "off"), (1.0, np.nan, "within")],

@@ -11,6 +11,8 @@ from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
 
 GOAL = 0.03
 """Shift of a mark that is allowed."""
+LAG_POWER = 2 / 3
+"""Power of epsilon with which a mark of a grain that yields shifts (docs/model.md, The scheme)."""
 EARLY = 0.5
 """A run that loses mass below this part of the omega of the finest run was torn apart by its integration."""
 MARK_TEXT = {
@@ -183,7 +185,7 @@ def tell(table):
             "run of the same grain; they have no part in the medians above:"
         )
         words += [_cells(rows, mark) for mark in IN_CELLS]
-    words.append(_production(rows))
+    words += [_production(rows), _limit(rows)]
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -238,6 +240,45 @@ def _production(rows, goal=GOAL):
         "Marks at the epsilon of production over those of the slowest run, all sizes of a type together, and whether "
         f"they are within {100 * goal:g} %, or left open by the standard error:\n\n"
         + markdown_table(["type", "epsilon", "grains", *IN_CELLS], lines)
+    )
+
+
+def shift_from_limit(rows, mark):
+    """How far a mark at the epsilon of production is expected to lie above that of an infinitely slow spin-up.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        From `ratios`, grains of one type.
+    mark : str
+
+    Returns
+    -------
+    dict
+        See `median_of`, over the grains: A epsilon^`LAG_POWER`, with A of each grain from a least-squares fit of
+        omega = omega_0 (1 + A epsilon^`LAG_POWER`) to first order in the shift.
+    """
+    shifts = []
+    for _, part in rows.groupby("grain"):
+        part = part[np.isfinite(part[mark])]
+        lag = part["x"].to_numpy() ** LAG_POWER
+        u, y = lag - lag.min(), part[mark].to_numpy() - 1.0
+        slope = (u @ y) / (u @ u) if u.any() else np.nan
+        shifts.append(slope * EPSILON[part["type"].iloc[0]] ** LAG_POWER if len(part) else np.nan)
+    return median_of(shifts)
+
+
+def _limit(rows):
+    """A table: shifts at the epsilon of production from the limit of a slow spin-up, extrapolated."""
+    lines = []
+    for kind, part in rows.groupby("type"):
+        found = [shift_from_limit(part, mark) for mark in IN_CELLS]
+        lines.append([kind, *(f"{measured(100 * s['median'], 100 * s['error'])}" for s in found)])
+    return (
+        f"If all shifts go with epsilon^{LAG_POWER:.2g}, as the lag of a grain that yields under its load and has to "
+        "be moved apart (docs/model.md, The scheme), the marks at the epsilon of production lie above those of an "
+        "infinitely slow spin-up by, in percent, medians over the grains:\n\n"
+        + markdown_table(["type", *IN_CELLS], lines)
     )
 
 
