@@ -26,13 +26,12 @@ import numpy as np
 from benchmarks import machine, tables
 from ratd import grow, spin_up
 from ratd.bound import cut_bound
-from ratd.engine.layout import DT
-from ratd.engine.state import new_state
 from ratd.errors import InputError
 from ratd.growth import RadiusDistribution
 from ratd.solid import solid_omega, spin_share
 from ratd.spinup import FIRST_LOSS, relax
 from ratd.units import NM
+from ratd.variations import first_step
 
 FASTER = 3
 """How much faster still the second run of each cell is."""
@@ -239,10 +238,7 @@ def expected_steps(plan, drive, grain):
     first monomers leave.
     """
     spin = plan.spin_up_of(drive, grain.type)
-    state = new_state(
-        grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=spin["timestep_factor"]
-    )
-    dt, omega = state.scalar[DT], cut_bound(grain)
+    dt, omega = first_step(grain, spin["timestep_factor"]), cut_bound(grain)
     if spin["epsilon"] is not None:
         return 1.0 / (spin["epsilon"] * omega * dt)
     if drive == "literal":

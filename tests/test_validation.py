@@ -198,6 +198,9 @@ def test_slow_spin_ups_have_tables_of_their_own(convergence_rows):
     text = works(show_convergence, convergence_rows + fine)
     assert "epsilon of production is another" not in without and "6 grains that show it" in text
     words = text.split("\n\n")
+    # but for what is said of the epsilon of production nothing else has changed
+    judged = ("No run has the epsilon of production.", "If all shifts go with", "| type | omega_disr |")
+    assert all(word.startswith(judged) for word in set(without.split("\n\n")) - set(words))
     for mark in show_convergence.IN_CELLS:
         head = words.index(f"{mark} by type and size:", words.index(next(w for w in words if "6 grains" in w)))
         assert "| BA | 300 | 3 | – | – | 1 | 1.06 | 1.12 |" in words[head + 1]
@@ -213,6 +216,7 @@ def test_shift_from_the_limit_is_that_of_the_law_it_is_made_with():
         for seed in range(4)
         for epsilon in (0.001, 0.002, 0.004)
     ]
+    rows += [epsilon_row("epsilon_fine", 4, epsilon, np.nan, kind="BAM1") for epsilon in (0.001, 0.002)]  # not known
     found = show_convergence.shift_from_limit(show_convergence.ratios(pd.DataFrame(rows), "epsilon_fine"), "omega_disr")
     assert found["median"] == pytest.approx(slope * EPSILON["BAM1"] ** power, rel=0.02) and found["n"] == 4
 

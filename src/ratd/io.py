@@ -324,16 +324,13 @@ def block(rows, kind, material, attributes=None):
     if not rows:
         raise InputError(f"block: a file of {kind} needs at least one grain")
     layout = schema.KINDS[kind]
-
-    def attributes_of(row):
-        return {name: value for name, value in row.attrs.items() if name in layout.attributes}
-
-    common = attributes_of(rows[0])
+    over_row = [name for name, variable in layout.variables.items() if variable.dims == (schema.ROW,)]
+    common = {name: value for name, value in rows[0].attrs.items() if name not in over_row}
     for row in rows:
         for name in row.variables:
             if name not in layout.variables:
                 raise InputError(f"block: a file of {kind} has no variable {name!r}")
-        if not _same(attributes_of(row), common):
+        if not _same({name: value for name, value in row.attrs.items() if name not in over_row}, common):
             raise InputError(f"block: the grains of one file of {kind} must have the same attributes {sorted(common)}")
     result = xr.Dataset(attrs=common | (attributes or {}))
     for name, variable in layout.variables.items():

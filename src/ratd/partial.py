@@ -82,7 +82,8 @@ class Pieces:
                 self._files |= dict.fromkeys(io.read(path, kind)["seed"].values.tolist(), path)
 
     def __contains__(self, seed):
-        return seed in self._files or seed in self._rows
+        """Whether a grain is in a piece."""
+        return seed in self._files
 
     def add(self, seed, row):
         """Keep the row (see `ratd.io`) of a grain that is finished."""
@@ -97,6 +98,8 @@ class Pieces:
         start = time.monotonic()
         path = self._block.piece(next(iter(self._rows)))
         self._write(path, list(self._rows.values()))
+        for seed in self._rows:
+            self._block.checkpoint(seed).unlink(missing_ok=True)
         self._files |= dict.fromkeys(self._rows, path)
         self._rows = {}
         self._written = time.monotonic()
@@ -104,7 +107,9 @@ class Pieces:
 
     def join(self):
         """Write the file of the block, all of whose grains are finished."""
-        rows = dict(self._rows)
+        # the rest too becomes a piece: a row from a file has lost what the kind does not keep
+        self.write()
+        rows = {}
         for path in sorted(set(self._files.values())):
             file = io.read(path, self._kind)
             rows |= zip(file["seed"].values.tolist(), io.rows(file, self._kind), strict=True)
@@ -112,8 +117,6 @@ class Pieces:
 
     def _write(self, path, rows):
         io.write(path, io.block(rows, self._kind, self._block.material, self._block.provenance), self._kind)
-        for seed in self._rows:
-            self._block.checkpoint(seed).unlink(missing_ok=True)
 
 
 def partial_folder(target):

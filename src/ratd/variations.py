@@ -15,7 +15,7 @@ from ratd.materials import Material
 from ratd.partial import Block
 from ratd.spinup import spin_up
 
-__all__ = ["of_material", "spin_up_ways", "steps_to", "way_material"]
+__all__ = ["first_step", "of_material", "spin_up_ways", "steps_to", "way_material"]
 
 
 def of_material(grain, **changed):
@@ -41,13 +41,18 @@ def way_material(way):
     return replace(Material(**way["grain"]["material"]), **way["changed"])
 
 
+def first_step(grain, timestep_factor):
+    """Time step [s] with which a spin-up of a grain as grown begins, by Eq. 31."""
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
+    return float(state.scalar[DT])
+
+
 def steps_to(grain, reach, angular_acceleration, timestep_factor):
     """Number of steps dt in which Eq. 24 takes a grain to omega = reach (d omega/dt / dt)^(1/3), dt being the first.
 
     With the drive literal grains come apart at a certain `reach` (docs/model.md, The two drives).
     """
-    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
-    dt = state.scalar[DT]
+    dt = first_step(grain, timestep_factor)
     return int(reach * (angular_acceleration / dt) ** (1.0 / 3.0) / angular_acceleration / dt)
 
 

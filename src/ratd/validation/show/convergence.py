@@ -261,10 +261,11 @@ def shift_from_limit(rows, mark):
     shifts = []
     for _, part in rows.groupby("grain"):
         part = part[np.isfinite(part[mark])]
+        if len(part) < 2:
+            continue
         lag = part["x"].to_numpy() ** LAG_POWER
         u, y = lag - lag.min(), part[mark].to_numpy() - 1.0
-        slope = (u @ y) / (u @ u) if u.any() else np.nan
-        shifts.append(slope * EPSILON[part["type"].iloc[0]] ** LAG_POWER if len(part) else np.nan)
+        shifts.append((u @ y) / (u @ u) * EPSILON[part["type"].iloc[0]] ** LAG_POWER)
     return median_of(shifts)
 
 
