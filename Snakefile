@@ -13,6 +13,8 @@ from ratd import jobs
 from ratd.config import check
 from ratd.errors import InputError
 from ratd.partial import tidy
+from ratd.reproduction.collected import Collected
+from ratd.reproduction.data import FOLDER
 
 min_version("9.27")
 
@@ -22,6 +24,7 @@ configfile: "config/config.yaml"
 
 try:
     PLAN = check(config)
+    COLLECTED = Collected(FOLDER, PLAN)
 except InputError as error:
     sys.exit(str(error))
 
@@ -46,7 +49,7 @@ wildcard_constraints:
     material=PLAN.pattern("materials"),
     type=PLAN.pattern("types"),
     size=PLAN.pattern("sizes"),
-    seeds=PLAN.pattern("blocks"),
+    seeds="|".join([PLAN.pattern("blocks"), *COLLECTED.blocks]),
 
 
 include: "workflow/rules/grains.smk"

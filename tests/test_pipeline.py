@@ -307,6 +307,11 @@ def test_the_document_is_redrawn_from_its_data_alone_with_the_same_bytes(copy_of
     done = copy_of.run("reproduction_data")
     assert done.returncode == 0, done.stdout
     shutil.rmtree(copy_of.folder / "results")
+    # what is in the data is not spun up again: of two blocks of each of the two cells the second alone is made
+    copy_of.write_config(TINY | {"seeds": {"first": 0, "number": 8}})
+    planned = copy_of.planned("reproduction_data")
+    assert planned["spin_up"] == 2 and planned["grow"] == 4 and "disrupt" not in planned
+    copy_of.write_config(TINY)
     drawn = []
     for _ in range(2):
         done = copy_of.run("redraw", "--forcerun", "redraw_figure", "redraw_argument", "redraw")

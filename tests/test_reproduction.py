@@ -9,20 +9,17 @@ import pytest
 import xarray as xr
 import yaml
 
-from files import make_run, runs_file
 from ratd import io
 from ratd.bound import midplane_bound
 from ratd.config import load
 from ratd.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
 from ratd.figures import save
 from ratd.formula_table import FORMULAE
-from ratd.fragmentation import FRAGMENT_COLUMNS
 from ratd.growth import grow
 from ratd.materials import MATERIALS
 from ratd.reproduction import figures
 from ratd.reproduction.argument import printed_porosity, solid_parts, solid_prediction
 from ratd.reproduction.bounds import ratios
-from ratd.reproduction.collect import Collection
 from ratd.reproduction.data import GROWN, Data
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.report import report
@@ -213,54 +210,6 @@ def test_sections_without_data_say_so(text):
     for words in ("check against LAMMPS are not", "literal drive are not", "hold no fragments", "Fig. 4 is not"):
         assert words in text
     assert len([line for line in text.splitlines() if line.startswith("#")]) > 20
-
-
-def collected(folder, path, figure5_seed=1):
-    """A collection from a file of made-up runs."""
-    config = load(ROOT / "config" / "config.yaml").config
-    cell = {"material": "q-S", "type": "BA", "size_nm": make_run(0).attrs["a_eff"] * 1e9}
-    config["figures"] = config["figures"] | {"figure4": cell, "figure5": cell | {"seed": figure5_seed}}
-    provenance = {"code_hash": "0123", "versions": "ratd 0"}
-    collection = Collection(folder, config, provenance)
-    collection.runs([path], "prescribed")
-    collection.finish("make it")
-    return collection
-
-
-def test_collection_holds_fragments_records_and_pictures(tmp_path):
-    made = runs_file(tmp_path / "runs.nc")
-    for k, run in enumerate(made):
-        run.attrs["a_eff"] = make_run(0).attrs["a_eff"]
-        made[k] = io.run_row(run)
-    io.write(tmp_path / "runs.nc", io.block(made, "spinup", MATERIALS["q-S"], {"code_hash": "0123"}), "spinup")
-    folder = tmp_path / "data"
-    collected(folder, tmp_path / "runs.nc")
-    fragments = io.read(folder / "fragments/prescribed.nc", "fragments")
-    assert fragments["seed"].values.tolist() == [0, 1, 2] and set(FRAGMENT_COLUMNS) < set(fragments.variables)
-    course = io.read_runs(folder / "figure4/prescribed.nc")
-    assert [run.attrs["seed"] for run in course] == [0, 1, 2] and not any("snapshot" in run.sizes for run in course)
-    np.testing.assert_array_equal(course[1]["total_stress"].values, made[1]["total_stress"].values)
-    shown = io.read_runs(folder / "figure5/prescribed.nc")[0]
-    assert shown.attrs["seed"] == 1 and 0 < shown.sizes["snapshot"] <= 2
-    readme = (folder / "README.md").read_text()
-    assert "make it" in readme and "`fragments/prescribed.nc`" in readme and str(tmp_path) not in readme
-
-
-def test_collecting_again_gives_the_same_bytes_and_leaves_nothing_old(tmp_path):
-    runs_file(tmp_path / "runs.nc")
-    folder = tmp_path / "data"
-    collected(folder, tmp_path / "runs.nc")
-    first = {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    (folder / "ensemble").mkdir()
-    (folder / "ensemble" / "old.nc").write_text("old")
-    collected(folder, tmp_path / "runs.nc")
-    assert {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == first
-    # a study may come from other results than the ensemble
-    (folder / "calibration.nc").write_text("a study")
-    collected(folder, tmp_path / "runs.nc")
-    assert (folder / "calibration.nc").read_text() == "a study" and "`calibration.nc`" in (
-        folder / "README.md"
-    ).read_text()
 
 
 def test_a_folder_without_config_has_nothing_to_draw(tmp_path):

@@ -8,6 +8,7 @@ concerns the figures only, and a further seed concerns no other block.
 import math
 import re
 from dataclasses import asdict, dataclass
+from itertools import groupby
 from pathlib import Path
 
 import jsonschema
@@ -246,13 +247,13 @@ def check(config, schemas="config/schema"):
                 )
     _check_fewer(plan)
     for k, grain in enumerate(config["snapshots"]["grains"]):
-        plan.find_cell(grain, f"snapshots.grains[{k}]")
-        plan.find_seed(grain["seed"], plan.seeds_of(_cell(grain)), f"snapshots.grains[{k}].seed")
+        plan.findcell_of(grain, f"snapshots.grains[{k}]")
+        plan.find_seed(grain["seed"], plan.seeds_of(cell_of(grain)), f"snapshots.grains[{k}].seed")
     figure4, figure6 = config["figures"]["figure4"], config["figures"]["figure6"]
     if figure4 is not None:
-        plan.find_cell(figure4, "figures.figure4")
+        plan.findcell_of(figure4, "figures.figure4")
         for drive in config["drives"]:
-            if not plan.seeds_of(_cell(figure4), drive):
+            if not plan.seeds_of(cell_of(figure4), drive):
                 raise InputError(
                     f"config: figures.figure4 is a cell that seeds.fewer leaves out for the drive {drive}; "
                     "allowed: a cell with grains for every drive, or null"
@@ -272,7 +273,7 @@ def check(config, schemas="config/schema"):
             raise InputError(f"config: figures.figure5 is {figure5}; allowed: one of snapshots.grains, or null")
         for drive in config["drives"]:
             plan.find_seed(
-                figure5["seed"], plan.seeds_of(_cell(figure5), drive), f"figures.figure5.seed (drive {drive})"
+                figure5["seed"], plan.seeds_of(cell_of(figure5), drive), f"figures.figure5.seed (drive {drive})"
             )
     if figure8 is not None:
         for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
@@ -285,11 +286,11 @@ def check(config, schemas="config/schema"):
                 plan.find(value, key, f"figures.figure9.{key}[{k}]")
     own = config["figures"]["calibration"]
     if own is not None:
-        plan.find_cell(own, "figures.calibration")
+        plan.findcell_of(own, "figures.calibration")
     own = config["figures"]["formulae"]
     if own is not None:
         for kind in own["types"]:
-            plan.find_cell(own | {"type": kind}, "figures.formulae")
+            plan.findcell_of(own | {"type": kind}, "figures.formulae")
     return plan
 
 
@@ -309,7 +310,7 @@ def _check_fewer(plan):
             )
 
 
-def _cell(names):
+def cell_of(names):
     """(material, type, size) of a mapping with material, type and size_nm, the size as in `Plan.sizes`."""
     return names["material"], names["type"], size_label(names["size_nm"])
 
@@ -324,6 +325,13 @@ def _check_finite(value, path):
             _check_finite(part, (*path, k))
     elif isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"config: {_dotted(path)} is {value}; allowed: finite numbers")
+
+
+def consecutive(seeds):
+    """Rows of whole numbers without a gap, list of lists, from numbers in ascending order."""
+    # a number less its place stays the same as long as none is missing
+    rows = groupby(enumerate(seeds), key=lambda item: item[1] - item[0])
+    return [[seed for _, seed in row] for _, row in rows]
 
 
 def size_label(size):
@@ -393,7 +401,7 @@ class Plan:
                 number = entry["number"]
         return self.seeds[:number]
 
-    def blocks(self, cell=None, drive=None):
+    def blocks(self, cell=None, drive=None, without=()):
         """Blocks of seeds as they stand in names of files.
 
         Parameters
@@ -402,13 +410,15 @@ class Plan:
             See `seeds_of`; default: those of a cell with all seeds.
         drive : str, optional
             See `seeds_of`.
+        without : collection of int, optional
+            Seeds to leave out. A block that holds some of them falls into parts, none of which has seeds of two blocks.
 
         Returns
         -------
         list of str
             Such as ``"0-9"``; the last one may be shorter than the others.
         """
-        return self._split(self.seeds, None) if cell is None else self._split(self.seeds_of(cell, drive), cell)
+        return self._split(self.seeds if cell is None else self.seeds_of(cell, drive), cell, without)
 
     def _block_size(self, cell):
         small = self.config.get("small_grains")
@@ -416,9 +426,11 @@ class Plan:
             return small["block_size"]
         return self.config["block_size"]
 
-    def _split(self, seeds, cell):
+    def _split(self, seeds, cell, without=()):
         step = self._block_size(cell)
-        return [f"{part[0]}-{part[-1]}" for part in (seeds[k : k + step] for k in range(0, len(seeds), step))]
+        blocks = (seeds[k : k + step] for k in range(0, len(seeds), step))
+        parts = (part for block in blocks for part in consecutive(seed for seed in block if seed not in without))
+        return [f"{part[0]}-{part[-1]}" for part in parts]
 
     def grown_block(self, cell, block):
         """Block of grown grains in which the grains of a block of some drive are, see `blocks`."""
@@ -531,7 +543,7 @@ class Plan:
         own = self.config["figures"]["figure4"]
         if own is None:
             return []
-        return [self.file(path, _cell(own), seeds=block) for block in self.blocks(_cell(own), drive)]
+        return [self.file(path, cell_of(own), seeds=block) for block in self.blocks(cell_of(own), drive)]
 
     def figure1_files(self, path):
         """Files with the grains that figure 1 shows, see `figure4_files`.
@@ -553,7 +565,7 @@ class Plan:
         own = self.config["figures"]["figure5"]
         if own is None:
             return []
-        cell = _cell(own)
+        cell = cell_of(own)
         return [self.file(path, cell, seeds=self._block_with(own["seed"], self.seeds_of(cell, drive), cell))]
 
     @property
@@ -580,7 +592,7 @@ class Plan:
             allowed = f"{seeds[0]} to {seeds[-1]}" if seeds else "none, seeds.fewer leaves the cell out"
             raise InputError(f"config: {where} is {seed}; allowed: {allowed}")
 
-    def find_cell(self, cell, where):
+    def findcell_of(self, cell, where):
         """Raise InputError unless the ensemble has a cell, a dict with material, type and size_nm."""
         for name, key in (("material", "materials"), ("type", "types"), ("size_nm", "sizes_nm")):
             self.find(cell[name], key, f"{where}.{name}")

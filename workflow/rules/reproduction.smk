@@ -1,7 +1,8 @@
 # The reproduction document: its data, collected from the results of the config in use, and what is drawn from them.
+# Grains that the data hold already need no results.
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
-from ratd.reproduction.data import FOLDER, FROM_RESULTS, Data
+from ratd.reproduction.data import FROM_RESULTS, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -9,13 +10,16 @@ DOCS = str(Path(FOLDER).parent)
 
 rule reproduction_data:
     input:
-        ensemble=expand(
-            "<results>/ensemble/{drive}/{name}.nc",
-            drive=PLAN.config["drives"],
-            name=["grains", "table3"],
-        ),
-        grown=rules.grown.output.table,
-        runs=rules.spinups.input,
+        grown=[] if COLLECTED.grown else [rules.grown.output.table],
+        runs=[
+            PLAN.file(
+                f"<results>/spinup/{drive}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc",
+                cell,
+                seeds=block,
+            )
+            for drive in PLAN.config["drives"]
+            for cell, block in COLLECTED.missing(drive)
+        ],
         grains=rules.figure1.input,
         pairs=[
             f"<results>/pairs/{material}.nc"

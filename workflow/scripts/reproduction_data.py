@@ -2,32 +2,30 @@
 
 from pathlib import Path
 
+from ratd.config import check
 from ratd.jobs import Job
 from ratd.reproduction.collect import Collection
-from ratd.reproduction.data import GROWN
 from ratd.validation import lammps, literal
 
 with Job(snakemake) as job:
     files, settings = snakemake.input, job.settings
-    collection = Collection(Path(snakemake.output[0]).parent, settings["config"], job.provenance)
-    for drive in settings["config"]["drives"]:
-        for name in ("grains", "table3"):
-            what = "all grains" if name == "grains" else "fit of Eq. 33"
-            source = next(path for path in files.ensemble if path.endswith(f"{drive}/{name}.nc"))
-            collection.copy(source, f"ensemble/{drive}/{name}.nc", f"{what}, drive {drive}")
-        collection.runs([path for path in files.runs if f"/spinup/{drive}/" in path], drive)
-        job.log.info(f"drive {drive}: collected")
-    collection.copy(files.grown, GROWN, "all grains of the config as grown")
+    plan = check(settings["config"])
+    collection = Collection(Path(snakemake.output[0]).parent, plan, job.provenance)
+    collection.grown(*files.grown)
+    for drive in plan.config["drives"]:
+        runs = [path for path in files.runs if f"/spinup/{drive}/" in path]
+        collection.runs(runs, drive)
+        job.log.info(f"drive {drive}: {len(runs)} files collected")
     for path in files.pairs:
         collection.copy(path, f"pairs/{Path(path).name}", f"pairs of Fig. 10, {Path(path).stem}")
     if files.grains:
-        collection.grains(files.grains, settings["config"]["figures"]["figure1"]["seed"])
+        collection.grains(files.grains, plan.config["figures"]["figure1"]["seed"])
     for name, path in settings["studies"].items():
         collection.copy(path, name, "a study of the reproduction")
-    for check in (lammps, literal):
-        name = check.KIND.removeprefix("validation_")
+    for check_of in (lammps, literal):
+        name = check_of.KIND.removeprefix("validation_")
         if settings["validation"].get(name):
             what = f"cases of the check {name} of docs/validation.md"
-            collection.tables(settings["validation"][name], check.KIND, f"validation/{name}.nc", what)
+            collection.tables(settings["validation"][name], check_of.KIND, f"validation/{name}.nc", what)
     collection.finish(settings["command"])
     job.log.info(f"{len(collection.written)} files in {collection.folder}")

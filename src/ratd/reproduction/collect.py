@@ -3,47 +3,55 @@
 import shutil
 from pathlib import Path
 
+import pandas as pd
 import xarray as xr
 import yaml
 
 from ratd import io
+from ratd.ensemble import GRAIN_COLUMNS, fit_ensemble, grain_table, sort_cells, table3_dataset, table_dataset
+from ratd.errors import InputError
 from ratd.figures.figure5 import nearest_snapshots
 from ratd.fragmentation import fragmentation, join
 from ratd.markdown import markdown_table
 from ratd.marks import disruption
-from ratd.provenance import file_hash, settings_hash
-from ratd.reproduction.data import CONFIG
-from ratd.units import NM
+from ratd.provenance import file_hash, settings_hash, source_hash
+from ratd.reproduction.collected import AT_REST, INDEX, RECORDS, SNAPSHOTS, Collected, grain_key
+from ratd.reproduction.data import CONFIG, GROWN
+from ratd.reproduction.kept import read_kept
 
 README = "README.md"
+KEPT = "as it was before this collection"
 
 
 class Collection:
     """A folder of data in the making.
 
+    Grains that are there already and that the config would make alike stay, next to the new ones.
+
     Parameters
     ----------
     folder : path-like
-    config : dict
-        The config that the results were made with.
+    plan : ratd.config.Plan
+        Of the config that the results were made with.
     provenance : dict
         Attributes of files that are made here, from `ratd.provenance.provenance`.
 
     Attributes
     ----------
+    collected : ratd.reproduction.collected.Collected
+        The grains of the folder.
     written : dict of str to str
         Name of a file below the folder -> what it holds.
     """
 
-    def __init__(self, folder, config, provenance):
-        self.folder, self.config, self.provenance = Path(folder), config, provenance
+    def __init__(self, folder, plan, provenance):
+        self.folder, self.plan, self.provenance = Path(folder), plan, provenance
+        self.collected = Collected(folder, plan)
+        # what will not stay is forgotten first: after a kill no grain may be said to be there that is not
+        self.collected.write()
         self.written = {}
-        self._cells = {name: self._cell(config["figures"].get(name)) for name in ("figure4", "figure5")}
-        io.write_text(self._new(CONFIG, "the config"), yaml.safe_dump(config, sort_keys=False, allow_unicode=True))
-
-    @staticmethod
-    def _cell(own):
-        return own and (own["material"], own["type"], round(own["size_nm"], 6))
+        text = yaml.safe_dump(plan.config, sort_keys=False, allow_unicode=True)
+        io.write_text(self._new(CONFIG, "the config"), text)
 
     def _new(self, name, what):
         self.written[name] = what
@@ -62,43 +70,92 @@ class Collection:
             rows = [row for row in io.rows(file, "grains") if row["seed"].item() == seed]
             by_type.setdefault(file.attrs["type"], (io.material_of(file), []))[1].extend(rows)
         for kind, (material, rows) in by_type.items():
-            dataset = io.block(rows, "grains", material, self.provenance)
-            io.write(self._new(f"figure1/{kind}.nc", f"grains of Fig. 1, {kind}"), dataset, "grains")
+            dataset = io.block(rows, "grains", material)
+            self._write(f"figure1/{kind}.nc", f"grains of Fig. 1, {kind}", dataset, "grains")
+
+    def grown(self, path=None):
+        """Copy the table of all grains as grown; without one, that of the folder stays."""
+        if path is None:
+            self.written[GROWN] = KEPT
+            return
+        self.copy(path, GROWN, "all grains of the config as grown")
+        for cell in self.plan.cells:
+            self.collected.grains.pop((AT_REST, *cell), None)
+        file = io.read(path, "table")
+        for *cell, seed in _keys(file.to_pandas()):
+            self.collected.add(AT_REST, cell, seed, file.attrs["code_hash"])
 
     def runs(self, paths, drive):
-        """Of all spin-ups of a drive the fragments; the records of the cell of figure 4; the pictures of figure 5."""
-        rows, course = [], []
+        """Take all spin-ups of a drive: marks and fit, fragments, the records and pictures that figures show.
+
+        Parameters
+        ----------
+        paths : list of path-like
+            Files of spin-ups. They may lack grains that the folder has.
+        drive : str
+        """
+        kept = read_kept(self.folder, drive, self.collected)
+        marks, fragments, course, pictures = {}, kept.fragments, kept.course, kept.pictures
+        marks_source = source_hash(modules=["ratd.marks"])
         for path in paths:
             file = io.read(path, "spinup")
-            cell = (file.attrs["material"], file.attrs["type"])
             for run in io.runs(file):
-                mark = disruption(run)
-                rows.append(fragmentation(run, mark))
-                here = (*cell, round(run.attrs["a_eff"] / NM, 6))
-                if here == self._cells["figure4"]:
-                    course.append((io.material_of(file), _without_snapshots(run)))
-                if here == self._cells["figure5"] and run.attrs["seed"] == self.config["figures"]["figure5"]["seed"]:
-                    shown = [(io.material_of(file), _shown(run, mark))]
-                    self._write_runs(f"figure5/{drive}.nc", f"the run of Fig. 5, drive {drive}", shown)
-        dataset = join(rows).assign_attrs(drive=drive, **self.provenance)
+                key = grain_key(run.attrs)
+                marks[key], fragments[key] = disruption(run), fragmentation(run, disruption(run))
+                shown = self.collected.shown((drive, *key[:3]), key[3])
+                if RECORDS in shown:
+                    course[key] = run.drop_dims(["snapshot", "monomer"], errors="ignore")
+                if SNAPSHOTS in shown:
+                    pictures[key] = _shown(run, marks[key])
+                self.collected.add(drive, key[:3], key[3], file.attrs["code_hash"], marks_source)
+        table = self._table(kept.table, marks)
+        self._write(f"ensemble/{drive}/grains.nc", f"all grains, drive {drive}", table_dataset(table), "table")
+        fit = table3_dataset(self._fit(table, drive))
+        self._write(f"ensemble/{drive}/table3.nc", f"fit of Eq. 33, drive {drive}", fit, "fit")
         what = f"fragments that leave until half of the mass has left, drive {drive}"
-        io.write(self._new(f"fragments/{drive}.nc", what), dataset, "fragments")
-        if course:
-            self._write_runs(f"figure4/{drive}.nc", f"the runs of Fig. 4, drive {drive}", course)
+        joined = join([fragments[key] for key in _keys(table)]).assign_attrs(drive=drive)
+        self._write(f"fragments/{drive}.nc", what, joined, "fragments")
+        for number, runs in ((4, course), (5, pictures)):
+            if runs:
+                what = f"the spin-ups of Fig. {number}, drive {drive}"
+                material = self.plan.materials[next(iter(runs))[0]]
+                rows = io.block([io.run_row(runs[key]) for key in sorted(runs)], "spinup", material)
+                self._write(f"figure{number}/{drive}.nc", what, rows, "spinup")
 
-    def _write_runs(self, name, what, runs):
-        material = runs[0][0]
-        dataset = io.block([io.run_row(run) for _, run in runs], "spinup", material, self.provenance)
-        io.write(self._new(name, what), dataset, "spinup")
+    def _table(self, old, marks):
+        """Table of the grains with new marks, and of those of an older table that have none."""
+        parts = []
+        if old is not None:
+            parts.append(old[[key not in marks for key in _keys(old)]])
+        if marks:
+            grown = io.read_table(self.folder / GROWN)[list(GRAIN_COLUMNS)]
+            parts.append(grain_table(grown[[key in marks for key in _keys(grown)]], list(marks.values())))
+        if not parts:
+            raise InputError(f"{self.folder}: there is no spin-up to collect, and none from before")
+        return sort_cells(pd.concat(parts, ignore_index=True))
+
+    def _fit(self, table, drive):
+        own = self.plan.ensemble(drive)
+        return fit_ensemble(
+            table,
+            own["mean_monomer_radius"],
+            n_bootstrap=own["bootstrap"],
+            confidence=own["confidence"],
+            seed=own["seed"],
+            materials=self.plan.materials,
+        )
+
+    def _write(self, name, what, dataset, kind):
+        io.write(self._new(name, what), dataset.assign_attrs(self.provenance), kind)
 
     def tables(self, paths, kind, name, what):
         """Several files of tables of one kind as one file."""
         parts = [io.read(path, kind) for path in paths]
         joined = xr.concat(parts, dim=next(iter(parts[0].sizes)), data_vars="all").drop_attrs()
-        io.write(self._new(name, what), joined.assign_attrs(self.provenance), kind)
+        self._write(name, what, joined, kind)
 
     def finish(self, command):
-        """Remove data of an earlier collection, and write the README of the folder.
+        """Remove data of an earlier collection, and write the index and the README of the folder.
 
         Studies and checks of the validation stay: they may come from other results than the ensemble.
         """
@@ -107,9 +164,11 @@ class Collection:
             if name in self.written:
                 continue
             if path.parent == self.folder or path.parent.name == "validation":
-                self.written[name] = "as it was before this collection"
+                self.written[name] = KEPT
             else:
                 path.unlink()
+        self.collected.write()
+        self.written[INDEX] = "which grains are there, and what made them"
         rows = [
             [f"`{name}`", what, f"{(self.folder / name).stat().st_size / 1e3:.1f}", file_hash(self.folder / name)]
             for name, what in sorted(self.written.items())
@@ -117,8 +176,10 @@ class Collection:
         text = TEXT.format(
             command=command,
             code=self.provenance["code_hash"],
-            config=settings_hash(self.config),
+            config=settings_hash(self.plan.config),
             versions=self.provenance["versions"],
+            index=INDEX,
+            sources=markdown_table(["drive", "grains", "source", "source of the marks"], self.collected.summary()),
             table=markdown_table(["file", "what it holds", "kB", "hash"], rows),
         )
         io.write_text(self.folder / README, text)
@@ -131,17 +192,23 @@ Collected by
     {command}
 
 from the results of the pipeline with the config that stands in `config.yaml` (hash {config}). Source of the collection:
-{code}. {versions}. Each netCDF file names in its attributes the settings, the hash of the source and of the
-inputs that it was made with; files of the pipeline are copied as they are. `snakemake --cores 2 redraw` draws all
-figures and writes docs/reproduction.md from these files alone.
+{code}. {versions}. Each netCDF file names in its attributes the settings, the hash of the source and of the inputs that
+it was made with; files of the pipeline are copied as they are. `snakemake --cores 2 redraw` draws all figures and
+writes docs/reproduction.md from these files alone.
+
+The ensemble was computed in pieces. The same command spins up only what the config wants and `{index}` does not name,
+and adds it to what is here; grains that another config or another law would make are dropped. Grains that were spun up
+by older source stay until they are dropped from `{index}`:
+
+{sources}
 
 {table}
 """
 
 
-def _without_snapshots(run):
-    """A run without its snapshots."""
-    return run.drop_dims(["snapshot", "monomer"], errors="ignore")
+def _keys(table):
+    """Key of each grain of a table, see `ratd.reproduction.collected.grain_key`."""
+    return [grain_key(row) for row in table.to_dict("records")]
 
 
 def _shown(run, mark):
