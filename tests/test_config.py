@@ -70,7 +70,7 @@ def test_quick_is_three_of_each():
             "or null",
         ),
         (
-            {"seeds": {"fewer": [{"sizes_nm": [350], "number": 0}]}},
+            {"seeds": {"fewer": [{"sizes_nm": [500], "number": 0}]}},
             "snapshots.grains[0].seed is 0",
             "seeds.fewer leaves the cell out",
         ),
@@ -80,7 +80,7 @@ def test_quick_is_three_of_each():
                 "seeds": {"first": 3, "fewer": [{"drives": ["literal"], "number": 2}]},
             }
             | {
-                "snapshots": {"grains": [{"material": "q-S", "type": "BAM2", "size_nm": 350, "seed": 6}]},
+                "snapshots": {"grains": [{"material": "q-S", "type": "BAM2", "size_nm": 500, "seed": 6}]},
                 "figures": {"figure1": None, "figure5": {"seed": 6}},
             },
             "figures.figure5.seed (drive literal) is 6",
@@ -288,8 +288,8 @@ def test_epsilon_is_one_for_all_types_or_one_for_each():
 
 def test_snapshots_concern_the_block_of_the_grain_only():
     plan = load(DEFAULT)
-    assert plan.spin_up("prescribed", "q-S", "BAM2", "350", "0-9")["snapshot_seeds"] == [0]
-    for cell in (("q-S", "BAM2", "350", "10-19"), ("q-S", "BAM1", "350", "0-9"), ("a-C", "BAM2", "350", "0-9")):
+    assert plan.spin_up("prescribed", "q-S", "BAM2", "500", "0-9")["snapshot_seeds"] == [0]
+    for cell in (("q-S", "BAM2", "500", "10-19"), ("q-S", "BAM1", "500", "0-9"), ("a-C", "BAM2", "500", "0-9")):
         settings = plan.spin_up("prescribed", *cell)
         assert settings["snapshot_seeds"] == [] and settings["snapshot_every"] == 0
 

@@ -303,12 +303,12 @@ def test_row_that_is_not_one_of_its_kind_is_refused(change, said):
         io.block([change(io.run_row(make_run()))], "spinup", MATERIALS["q-S"])
 
 
-def test_holds_compares_the_provenance(tmp_path):
+def test_file_is_read_only_if_it_was_made_alike(tmp_path):
     path = tmp_path / "grains.nc"
     attributes = {"code_hash": "1", "settings": "{}"}
-    assert not io.holds(path, "grains", attributes)
+    assert io.read_made_with(path, "grains", attributes) is None
     grains_file(path, attributes=attributes)
-    assert io.holds(path, "grains", attributes)
-    assert not io.holds(path, "grains", attributes | {"code_hash": "2"})
+    assert io.read_made_with(path, "grains", attributes).identical(io.read(path, "grains"))
+    assert io.read_made_with(path, "grains", attributes | {"code_hash": "2"}) is None
     path.write_bytes(path.read_bytes()[:-100])
-    assert not io.holds(path, "grains", attributes)
+    assert io.read_made_with(path, "grains", attributes) is None

@@ -274,8 +274,8 @@ def read(path, kind):
     return dataset
 
 
-def holds(path, kind, attributes):
-    """Whether a file is there, whole, and made with the same source, settings and inputs.
+def read_made_with(path, kind, attributes):
+    """Read a file, if it is there, whole, and made with the same source, settings and inputs.
 
     Parameters
     ----------
@@ -286,14 +286,14 @@ def holds(path, kind, attributes):
 
     Returns
     -------
-    bool
-        False for a damaged file too: the caller makes it anew.
+    xarray.Dataset or None
+        See `read`. None for a damaged file too: the caller makes it anew.
     """
     try:
-        found = read(path, kind).attrs
+        found = read(path, kind)
     except FileError:
-        return False
-    return all(found.get(name) == value for name, value in attributes.items())
+        return None
+    return found if all(found.attrs.get(name) == value for name, value in attributes.items()) else None
 
 
 def block(rows, kind, material, attributes=None):

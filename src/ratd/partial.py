@@ -78,8 +78,9 @@ class Pieces:
         self._rows = {}  # seed -> row that no piece holds yet
         self._pause, self._written = 0.0, time.monotonic()
         for path in sorted(block.folder.glob("seed_*.nc")):
-            if io.holds(path, kind, block.provenance):
-                self._files |= dict.fromkeys(io.read(path, kind)["seed"].values.tolist(), path)
+            piece = io.read_made_with(path, kind, block.provenance)
+            if piece is not None:
+                self._files |= dict.fromkeys(piece["seed"].values.tolist(), path)
 
     def __contains__(self, seed):
         """Whether a grain is in a piece."""
