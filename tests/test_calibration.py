@@ -5,20 +5,21 @@ import pandas as pd
 import pytest
 
 from ratd import io
-from ratd.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table
+from ratd.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table, step_ratios
 from ratd.errors import InputError
 from ratd.figures import calibration
 from ratd.growth import grow
 from ratd.spinup import spin_up
 
-ACCELERATIONS = (3e16, 1e17)
+RUNS = {4e16: 0.02, 1e17: 0.05, 3e17: 0.05}
+"""d omega/dt -> f. Over the step it is the same for the first two."""
 
 
 def made_up(exponent, prefactors=(1.0,), accelerations=(1e14, 1e15, 1e16)):
     """Runs whose marks follow a power law, with a prefactor for each grain."""
     rows = [
         dict.fromkeys(CALIBRATION_COLUMNS, 1.0)
-        | {"material": "q-S", "type": "BAM2", "end_reason": "", "seed": seed, "angular_acceleration": a}
+        | {"material": "q-S", "type": "BAM2", "end_reason": "", "seed": seed, "printed_acceleration": a}
         | {"omega_first_loss": prefactor * a**exponent, "omega_mass_99": 2.0 * prefactor * a**exponent}
         for seed, prefactor in enumerate(prefactors)
         for a in accelerations
@@ -29,7 +30,7 @@ def made_up(exponent, prefactors=(1.0,), accelerations=(1e14, 1e15, 1e16)):
 @pytest.fixture(scope="module")
 def runs():
     grain = grow("BAM2", 75e-9, "q-S", 0)
-    return [spin_up(grain, drive="literal", angular_acceleration=a, timestep_factor=0.05) for a in ACCELERATIONS]
+    return [spin_up(grain, drive="literal", angular_acceleration=a, timestep_factor=f) for a, f in RUNS.items()]
 
 
 @pytest.fixture(scope="module")
@@ -38,12 +39,22 @@ def table(runs):
 
 
 def test_marks_of_real_runs_lie_in_order(runs, table):
-    assert list(table["angular_acceleration"]) == list(ACCELERATIONS)
+    assert list(table["angular_acceleration"]) == list(RUNS)
+    assert table["printed_acceleration"].tolist() == pytest.approx([4e16, 4e16, 1.2e17])
     assert (table["omega_first_loss"] <= table["omega_mass_99"]).all()
     assert (table["omega_mass_99"] <= table["omega_mass_75"]).all()
     mass, omega = runs[0]["mass"].values / runs[0].attrs["initial_mass"], runs[0]["omega"].values
     k = list(omega).index(table["omega_mass_99"][0])
     assert mass[k] <= 0.99 < mass[k - 1]
+
+
+def test_runs_with_another_step_stand_for_the_printed_one(table):
+    """The same d omega/dt over the step: the onset of this grain differs by 5 % where d omega/dt differs by 2.5."""
+    pairs = step_ratios(table)
+    assert pairs[["seed", "timestep_factor"]].values.tolist() == [[0, 0.05]]
+    ratio = table["omega_mass_99"][1] / table["omega_mass_99"][0]
+    assert pairs["ratio"].tolist() == [ratio] and ratio == pytest.approx(1.0, abs=0.05)
+    assert not len(step_ratios(table[table["timestep_factor"] == 0.05]))
 
 
 def test_a_power_law_is_found_and_inverted():
@@ -87,7 +98,8 @@ def test_an_onset_that_is_none_is_refused(table):
 
 
 def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
-    fit = calibrate(table, 2e9)
+    onset = table["omega_mass_99"].min()
+    fit = calibrate(table, onset)
     dataset = table.rename_axis("entry").to_xarray().drop_vars("entry").merge(fit)
     io.write(tmp_path / "a.nc", dataset, "calibration")
     back = io.read(tmp_path / "a.nc", "calibration")
@@ -96,6 +108,6 @@ def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
     drawn = {line.get_label(): line for line in axes.get_lines()}
     assert list(drawn["1 % of the mass lost"].get_ydata()) == list(table["omega_mass_99"])
     diamond = next(line for label, line in drawn.items() if line.get_marker() == "D")
-    assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == 2e9
+    assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == onset
     with pytest.raises(InputError, match="at least one run"):
         calibration(table[:0], fit)

@@ -121,6 +121,11 @@ def test_quick_is_three_of_each():
         ({"figures": {"formulae": {"size_nm": 75}}}, "figures.formulae.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"formulae": {"types": ["RA"]}}}, "figures.formulae.types[0] is 'RA'", "BA, BAM1 or BAM2"),
         ({"figures": {"calibration": {"reach": 0}}}, "figures.calibration.reach is 0", "above 0"),
+        (
+            {"figures": {"calibration": {"runs": [{"angular_acceleration": 1e15}]}}},
+            "the key figures.calibration.runs[0].timestep_factor is missing",
+            "at most 1",
+        ),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),
         ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),

@@ -44,7 +44,11 @@ TINY = {
             "epsilon": 0.2,
             "timestep_factor": 0.1,
         },
-        "calibration": {"size_nm": 50, "seeds": {"number": 1}, "angular_acceleration": [1e17, 3e17]},
+        "calibration": {
+            "size_nm": 50,
+            "seeds": {"number": 1},
+            "runs": [{"angular_acceleration": rate, "timestep_factor": 0.02} for rate in (1e17, 3e17)],
+        },
         "formulae": None,
         "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
     },

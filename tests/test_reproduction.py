@@ -181,7 +181,9 @@ def test_studies_are_told_from_their_columns(folder):
     data.__dict__["formulae"] = pd.DataFrame({"formula": names, **marks})
     values = {"omega_onset": 3e8, "calibrated": 3.4e13, "exponent": 0.32, "exponent_error": 0.01}
     values |= {"calibrated_low": 3e13, "calibrated_high": 4e13}
-    data.__dict__["calibration"] = xr.Dataset(values | {"seed": ("entry", [0, 1])})
+    runs = {"seed": [0, 0, 0], "printed_acceleration": [1e15, 1e15, 3e13], "timestep_factor": [0.02, 0.1, 0.1]}
+    runs |= {"omega_mass_99": [9.0e8, 9.9e8, 3e8]}
+    data.__dict__["calibration"] = xr.Dataset(values | {name: ("entry", column) for name, column in runs.items()})
     text = report(data, "reproduction")
     row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
     assert "1.120 ± " in row and "| yes |" in row
@@ -190,7 +192,8 @@ def test_studies_are_told_from_their_columns(folder):
     open_row = next(line for line in report(data, "reproduction").splitlines() if "T_vis = 9 ps over" in line)
     assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
     assert f"| {FORMULAE['damping']} | 0.600 ± 0.07" in text and "| 0.8 | 2 |" in text
-    assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 2 runs" in text
+    assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs" in text
+    assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times" in text
 
 
 def test_fig_1_is_as_printed():

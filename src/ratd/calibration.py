@@ -3,7 +3,9 @@
 The printed equations with the Coriolis force at the old velocity feed in energy at a rate ~ omega^2 dt, so that a grain
 comes apart at an omega that depends on d omega/dt (docs/model.md). The paper gives no d omega/dt that could be used
 ("hours" would be 1e16 steps), but it shows where the mass of one cell starts to fall (Fig. 4). Which d omega/dt gives
-just that is found by a fit over several of them.
+just that is found by a fit over several of them. Only d omega/dt over the step counts, so a run with another step than
+the printed one stands for one with the printed step and d omega/dt in proportion; where there are both, `step_ratios`
+tells how well they agree.
 """
 
 import numpy as np
@@ -13,7 +15,7 @@ import xarray as xr
 from ratd.errors import InputError
 from ratd.marks import disruption
 
-__all__ = ["CALIBRATION_COLUMNS", "FIT_VALUES", "MARKS", "calibrate", "calibration_table"]
+__all__ = ["CALIBRATION_COLUMNS", "FIT_VALUES", "MARKS", "calibrate", "calibration_table", "step_ratios"]
 
 MARKS = {
     "omega_first_loss": "first loss of mass",
@@ -23,6 +25,8 @@ MARKS = {
 ONSET = "omega_mass_99"
 """The mark that stands for the onset in Fig. 4: a single monomer that comes off cannot be seen there."""
 ONSET_LOSS = 0.01
+PRINTED_STEP = 0.02
+"""f in the time step f min(t_dis) of Eq. 31, Reissl et al. (2024), A&A 692, A60."""
 LAW_EXPONENT = 1.0 / 3.0
 """Exponent of d omega/dt in omega ~ (d omega/dt / dt)^(1/3), what the energy that is fed in would give by itself."""
 FARTHEST = 100.0
@@ -36,6 +40,7 @@ CALIBRATION_COLUMNS = {
     "angular_acceleration": ("rad s-2", "angular acceleration at the start"),
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
     "timestep": ("s", "first time step"),
+    "printed_acceleration": ("rad s-2", "angular acceleration over timestep_factor, times the printed factor of 0.02"),
     "steps": ("1", "number of time steps"),
     "omega_first_loss": ("rad s-1", "angular velocity of the first loss of mass"),
     "omega_mass_99": ("rad s-1", "angular velocity at which the largest fragment has lost 1 % of the initial mass"),
@@ -47,7 +52,7 @@ FIT_VALUES = {
     "omega_onset": ("rad s-1", "onset of mass loss that the literal drive is to have"),
     "exponent": ("1", "exponent p of omega ~ (d omega/dt)^p, fitted with a prefactor for each grain"),
     "exponent_error": ("1", "standard error of the exponent"),
-    "calibrated": ("rad s-2", "d omega/dt at which the mean onset is the wanted one"),
+    "calibrated": ("rad s-2", "d omega/dt at which the mean onset is the wanted one, at the printed step factor"),
     "calibrated_low": ("rad s-2", "calibrated d omega/dt, one standard error lower"),
     "calibrated_high": ("rad s-2", "calibrated d omega/dt, one standard error higher"),
     "calibrated_by_law": ("rad s-2", "the same with the exponent 1/3, from the least d omega/dt of each grain"),
@@ -66,7 +71,8 @@ def calibration_table(runs):
     Returns
     -------
     pandas.DataFrame
-        Columns of `CALIBRATION_COLUMNS`, sorted by seed and angular acceleration; NaN where a run ended before a mark.
+        Columns of `CALIBRATION_COLUMNS`, sorted by seed, printed_acceleration and step. NaN where a run ended before
+        a mark.
     """
     rows = []
     for run in runs:
@@ -74,14 +80,38 @@ def calibration_table(runs):
         row = {name: run.attrs[name] for name in CALIBRATION_COLUMNS if name in run.attrs}
         row |= {name: float(marks[name]) for name in CALIBRATION_COLUMNS if name in marks}
         gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
+        row["printed_acceleration"] = row["angular_acceleration"] * PRINTED_STEP / row["timestep_factor"]
         row["omega_mass_99"] = float(run["omega"].values[gone.argmax()]) if gone.any() else np.nan
         rows.append(row)
     table = pd.DataFrame(rows, columns=list(CALIBRATION_COLUMNS))
-    return table.sort_values(["seed", "angular_acceleration"], ignore_index=True)
+    return table.sort_values(["seed", "printed_acceleration", "timestep_factor"], ignore_index=True)
+
+
+def step_ratios(table, mark=ONSET):
+    """Onset of mass loss with a longer step over that with the printed one, at the same d omega/dt over the step.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `calibration_table`.
+    mark : str
+        One of `MARKS`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a pair of runs of one grain: seed, printed_acceleration, timestep_factor (of the longer step), ratio.
+    """
+    key = ["seed", "printed_acceleration"]
+    own = table.assign(printed_acceleration=[float(f"{value:.6g}") for value in table["printed_acceleration"]])
+    printed = own["timestep_factor"] == PRINTED_STEP
+    pairs = own[~printed].merge(own[printed][[*key, mark]], on=key, suffixes=("", "_printed"))
+    pairs["ratio"] = pairs[mark] / pairs[f"{mark}_printed"]
+    return pairs.loc[pairs["ratio"].notna(), [*key, "timestep_factor", "ratio"]].reset_index(drop=True)
 
 
 def calibrate(table, omega_onset, mark=ONSET):
-    """d omega/dt that gives the wanted onset of mass loss.
+    """d omega/dt that gives the wanted onset of mass loss with the printed step.
 
     Parameters
     ----------
@@ -110,8 +140,8 @@ def calibrate(table, omega_onset, mark=ONSET):
         raise InputError(f"calibrate: omega_onset is {omega_onset}, but must be above 0 rad/s")
     there = table[table[mark].notna()]
     value = dict.fromkeys(FIT_VALUES, np.nan) | {"omega_onset": float(omega_onset)}
-    if there["angular_acceleration"].nunique() > 1:
-        x, y = np.log(there["angular_acceleration"]), np.log(there[mark])
+    if there["printed_acceleration"].nunique() > 1:
+        x, y = np.log(there["printed_acceleration"]), np.log(there[mark])
         grain = there["seed"]
         inner_x, inner_y = x - x.groupby(grain).transform("mean"), y - y.groupby(grain).transform("mean")
         spread = (inner_x**2).sum()
@@ -125,8 +155,8 @@ def calibrate(table, omega_onset, mark=ONSET):
             lever = x.mean() - own.mean()
             scatter = own.std(ddof=1) / np.sqrt(len(own)) if len(own) > 1 else 0.0
             total = np.hypot(lever * error / exponent, scatter)
-            first = there.loc[there.groupby("seed")["angular_acceleration"].idxmin()]
-            law = np.log(first["angular_acceleration"]) + np.log(omega_onset / first[mark]) / LAW_EXPONENT
+            first = there.loc[there.groupby("seed")["printed_acceleration"].idxmin()]
+            law = np.log(first["printed_acceleration"]) + np.log(omega_onset / first[mark]) / LAW_EXPONENT
             value |= {"exponent": exponent, "exponent_error": error, "calibrated": np.exp(own.mean())}
             value |= {"calibrated_low": np.exp(own.mean() - total), "calibrated_high": np.exp(own.mean() + total)}
             value["calibrated_by_law"] = np.exp(law.mean())

@@ -247,11 +247,11 @@ def check(config, schemas="config/schema"):
                 )
     _check_fewer(plan)
     for k, grain in enumerate(config["snapshots"]["grains"]):
-        plan.findcell_of(grain, f"snapshots.grains[{k}]")
+        plan.find_cell(grain, f"snapshots.grains[{k}]")
         plan.find_seed(grain["seed"], plan.seeds_of(cell_of(grain)), f"snapshots.grains[{k}].seed")
     figure4, figure6 = config["figures"]["figure4"], config["figures"]["figure6"]
     if figure4 is not None:
-        plan.findcell_of(figure4, "figures.figure4")
+        plan.find_cell(figure4, "figures.figure4")
         for drive in config["drives"]:
             if not plan.seeds_of(cell_of(figure4), drive):
                 raise InputError(
@@ -286,11 +286,11 @@ def check(config, schemas="config/schema"):
                 plan.find(value, key, f"figures.figure9.{key}[{k}]")
     own = config["figures"]["calibration"]
     if own is not None:
-        plan.findcell_of(own, "figures.calibration")
+        plan.find_cell(own, "figures.calibration")
     own = config["figures"]["formulae"]
     if own is not None:
         for kind in own["types"]:
-            plan.findcell_of(own | {"type": kind}, "figures.formulae")
+            plan.find_cell(own | {"type": kind}, "figures.formulae")
     return plan
 
 
@@ -325,6 +325,10 @@ def _check_finite(value, path):
             _check_finite(part, (*path, k))
     elif isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"config: {_dotted(path)} is {value}; allowed: finite numbers")
+
+
+def _calibration_label(run):
+    return f"{run['angular_acceleration']:.6g}_{run['timestep_factor']:g}"
 
 
 def consecutive(seeds):
@@ -592,7 +596,7 @@ class Plan:
             allowed = f"{seeds[0]} to {seeds[-1]}" if seeds else "none, seeds.fewer leaves the cell out"
             raise InputError(f"config: {where} is {seed}; allowed: {allowed}")
 
-    def findcell_of(self, cell, where):
+    def find_cell(self, cell, where):
         """Raise InputError unless the ensemble has a cell, a dict with material, type and size_nm."""
         for name, key in (("material", "materials"), ("type", "types"), ("size_nm", "sizes_nm")):
             self.find(cell[name], key, f"{where}.{name}")
@@ -729,18 +733,18 @@ class Plan:
 
     @property
     def calibration_labels(self):
-        """Angular accelerations of the calibration as they stand in names of files; empty where it is left out."""
+        """Names of the files of the calibration, d omega/dt [rad/s2] and f of the runs; empty where it is left out."""
         own = self.config["figures"]["calibration"]
-        return [] if own is None else [f"{value:.6g}" for value in own["angular_acceleration"]]
+        return [] if own is None else [_calibration_label(run) for run in own["runs"]]
 
     def calibration_runs(self, label):
-        """Settings of the runs of the calibration at one angular acceleration, in a list of one way.
+        """Settings of the runs of the calibration at one angular acceleration and step, in a list of one way.
 
-        The cell is that of the config, and so are all settings of the literal drive but the angular acceleration.
+        The cell is that of the config, and so are all other settings of the literal drive.
         """
         own = self.config["figures"]["calibration"]
         first = own["seeds"]["first"]
-        pace = {"epsilon": None, "angular_acceleration": float(label)}
+        pace = {"epsilon": None} | next(run for run in own["runs"] if _calibration_label(run) == label)
         return [
             {
                 "grain": self.grow(own["material"], own["type"], size_label(own["size_nm"])),

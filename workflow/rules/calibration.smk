@@ -5,13 +5,13 @@ if CALIBRATION:
 
     rule calibration_runs:
         output:
-            "<results>/calibration/{acceleration}.nc",
+            "<results>/calibration/{pace}.nc",
         log:
-            "<results>/logs/calibration/{acceleration}.log",
+            "<results>/logs/calibration/{pace}.log",
         benchmark:
-            "<results>/benchmarks/calibration/{acceleration}.tsv"
+            "<results>/benchmarks/calibration/{pace}.tsv"
         wildcard_constraints:
-            acceleration=PLAN.pattern("calibration_labels"),
+            pace=PLAN.pattern("calibration_labels"),
         conda:
             "../envs/ratd.yaml"
         threads: 1
@@ -20,15 +20,15 @@ if CALIBRATION:
             runtime=1440,
         params:
             code=CODE["calibration_runs"],
-            settings=lambda w: PLAN.calibration_runs(w.acceleration),
+            settings=lambda w: PLAN.calibration_runs(w.pace),
         message:
-            "Spin up the cell of the calibration at {wildcards.acceleration} rad/s2 (literal)"
+            "Spin up the cell of the calibration at d omega/dt, f = {wildcards.pace} (literal)"
         script:
             "../scripts/calibration_runs.py"
 
     rule calibration:
         input:
-            expand("<results>/calibration/{acceleration}.nc", acceleration=CALIBRATION),
+            expand("<results>/calibration/{pace}.nc", pace=CALIBRATION),
         output:
             nc="<results>/calibration/fit.nc",
             csv=report(

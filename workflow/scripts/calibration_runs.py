@@ -1,4 +1,4 @@
-"""Spin up the grains of the calibration at one angular acceleration, by the equations as printed."""
+"""Spin up the grains of the calibration at one angular acceleration and step, by the equations as printed."""
 
 from ratd.io import run_row
 from ratd.jobs import Job

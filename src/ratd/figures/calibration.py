@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.calibration import MARKS, ONSET
+from ratd.calibration import MARKS, ONSET, PRINTED_STEP
 from ratd.errors import InputError
 from ratd.figures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, plural, styled
 
@@ -39,17 +39,18 @@ def calibration(table, fit):
     grains = plural(table["seed"].nunique(), "grain")
     title = (
         f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm, {grains}, drive: literal, "
-        f"f = {first['timestep_factor']:g}"
+        "f = " + ", ".join(f"{f:g}" for f in sorted(table["timestep_factor"].unique()))
     )
     figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, title)
     axes = figure.subplots()
     for name, meaning in MARKS.items():
         there = table[table[name].notna()]
-        axes.plot(there["angular_acceleration"], there[name], ls="none", label=meaning, **LOOK[name])
+        axes.plot(there["printed_acceleration"], there[name], ls="none", label=meaning, **LOOK[name])
     onset, exponent, calibrated = (float(fit[name]) for name in ("omega_onset", "exponent", "calibrated"))
     axes.axhline(onset, color=GREY, lw=0.8, ls="--", label="onset in Fig. 4 of the paper")
     if np.isfinite(calibrated):
-        x = np.geomspace(min(calibrated, table["angular_acceleration"].min()), table["angular_acceleration"].max(), 50)
+        rates = table["printed_acceleration"]
+        x = np.geomspace(min(calibrated, rates.min()), rates.max(), 50)
         axes.plot(x, onset * (x / calibrated) ** exponent, color=LOOK[ONSET]["color"], lw=0.8,
                   label=rf"fit, $\dot\omega^{{{exponent:.2f}}}$")  # fmt: skip
         low, high = float(fit["calibrated_low"]), float(fit["calibrated_high"])
@@ -60,7 +61,8 @@ def calibration(table, fit):
     axes.set_yscale("log")
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
-    axes.set_xlabel(r"$\mathrm{d}\omega/\mathrm{d}t$ [rad s$^{-2}$]")
+    scaled = "" if set(table["timestep_factor"]) == {PRINTED_STEP} else rf" \times\ {PRINTED_STEP:g}/f"
+    axes.set_xlabel(rf"$\mathrm{{d}}\omega/\mathrm{{d}}t{scaled}$ [rad s$^{{-2}}$]")
     axes.set_ylabel(r"$\omega$ [rad s$^{-1}$]")
     figure.legend(loc="outside lower center", ncols=2)
     return figure

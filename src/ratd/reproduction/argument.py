@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.beyond import SPLIT
+from ratd.calibration import PRINTED_STEP, step_ratios
 from ratd.figures.style import plural
 from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table
@@ -139,15 +140,26 @@ def calibration_section(data):
             f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
             f"{plural(int(found.sizes['entry']), 'run')}. This is the one place where anything was fitted to the paper."
         )
+        pairs = step_ratios(found.to_dataframe())
+        if len(pairs):
+            own = median_of(pairs["ratio"], pairs["seed"])
+            steps = ", ".join(f"{f:g}" for f in sorted(pairs["timestep_factor"].unique()))
+            parts.append(
+                f"It is the rate at the printed step, f = {PRINTED_STEP:g}. Only d omega/dt over the step counts, so "
+                "runs with a longer step and a d omega/dt that is as much greater, which are far cheaper, stand for "
+                f"it: in {plural(len(pairs), 'pair')} of runs of the same grain the onset with f = {steps} lies at "
+                f"{with_error(own['median'], own['error'])} times that with the printed step "
+                f"({between(pairs['ratio'].min(), pairs['ratio'].max())})."
+            )
     parts += solid_parts(data)
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
         parts.append(
             f"The grains of the drive `literal` here were spun up with {data.plan.pace('literal')} and f = "
-            f"{law['timestep_factor']:g}. The table sets them beside Eq. 33 with Table 3 for the same grains: level "
-            "(median of the ratio), and how the types are ordered at the sizes that all of them have, from the lowest "
-            "omega to the highest."
+            f"{law['timestep_factor']:g}{_at_printed_step(law)}. The table sets them beside Eq. 33 with Table 3 for "
+            "the same grains: level (median of the ratio), and how the types are ordered at the sizes that all of them "
+            "have, from the lowest omega to the highest."
         )
         rows = []
         for name, part in table.groupby("material", sort=False):
@@ -158,6 +170,14 @@ def calibration_section(data):
             rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
         parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
     return "\n\n".join(parts)
+
+
+def _at_printed_step(law):
+    """Words on the d omega/dt that a literal run stands for; none where it has the printed step itself."""
+    rate, factor = law["angular_acceleration"], law["timestep_factor"]
+    if rate is None or factor == PRINTED_STEP:
+        return ""
+    return f", which stands for {number(rate * PRINTED_STEP / factor)} rad/s² at the printed step"
 
 
 def solid_parts(data):
@@ -176,7 +196,11 @@ def solid_parts(data):
     if "literal" in data.tables and rate is not None:
         key = ["material", "type", "seed", "nm"]
         literal_runs = data.tables["literal"].assign(nm=_whole_nm)[[*key, "omega_disr"]]
-        both = with_literal_step(data).assign(nm=_whole_nm).merge(literal_runs, on=key, suffixes=("", "_literal"))
+        both = (
+            with_literal_step(data, law["timestep_factor"])
+            .assign(nm=_whole_nm)
+            .merge(literal_runs, on=key, suffixes=("", "_literal"))
+        )
         ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
         parts[0] += (
             f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
@@ -184,8 +208,8 @@ def solid_parts(data):
             f"({between(ratio['low'], ratio['high'])} for the middle two thirds)."
         )
     parts.append(
-        f"At the calibrated {number(data.calibration['calibrated'].item())} rad/s² and f = {law['timestep_factor']:g} "
-        "it gives, for all grains of the drive `prescribed`:"
+        f"At the calibrated {number(data.calibration['calibrated'].item())} rad/s² and f = {PRINTED_STEP:g} it "
+        "gives, for all grains of the drive `prescribed`:"
     )
     rows = []
     for name, part in table.groupby("material", sort=False):
@@ -203,11 +227,11 @@ def solid_parts(data):
     return parts
 
 
-def with_literal_step(data):
-    """Table of the grains of the drive `prescribed`, with literal_step, the time step of the drive `literal` [s]."""
-    factor = {drive: data.plan.spin_up_of(drive)["timestep_factor"] for drive in ("prescribed", "literal")}
+def with_literal_step(data, timestep_factor):
+    """Table of the grains of the drive `prescribed`, with literal_step, the time step [s] for another f."""
     table = data.tables["prescribed"]
-    return table.assign(literal_step=table["timestep"] * factor["literal"] / factor["prescribed"])
+    own = data.plan.spin_up_of("prescribed")["timestep_factor"]
+    return table.assign(literal_step=table["timestep"] * timestep_factor / own)
 
 
 def calibrated_grains(data):
@@ -224,7 +248,7 @@ def calibrated_grains(data):
     """
     if data.calibration is None or "prescribed" not in data.tables:
         return None
-    table = with_literal_step(data)
+    table = with_literal_step(data, PRINTED_STEP)
     omega = solid_prediction(table, data.calibration["calibrated"].item())
     return ratios(table.assign(omega_disr=omega), data.plan.materials)
 

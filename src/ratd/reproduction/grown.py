@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.beyond import SPLIT
+from ratd.calibration import PRINTED_STEP
 from ratd.ensemble import cell_statistics
 from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
@@ -27,8 +28,6 @@ POROSITY_REASON = (
     "With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a solid sphere P = -0.84. Single grains spread, small ones "
     "most; “holds” looks at the means of the sizes, to a tenth."
 )
-FACTOR = 0.02
-"""f of the printed time step."""
 
 
 def rows(data):
@@ -91,7 +90,7 @@ def _step(data):
         R = reduced_radius(radius, radius)
         r0 = equilibrium_contact_radius(R, material.surface_energy, material.reduced_modulus)
         mass = 4 / 3 * np.pi * material.density * radius**3
-        steps.append(FACTOR * dissipation_time(mass, R, r0, material.surface_energy))
+        steps.append(PRINTED_STEP * dissipation_time(mass, R, r0, material.surface_energy))
     printed = PRINTED["step"]
     ends = (min(steps), max(steps))
     text = f"{between(*(1e12 * end for end in ends))} ps"
