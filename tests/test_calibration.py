@@ -107,7 +107,7 @@ def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
     (axes,) = calibration(table, fit).axes
     drawn = {line.get_label(): line for line in axes.get_lines()}
     assert list(drawn["1 % of the mass lost"].get_ydata()) == list(table["omega_mass_99"])
-    diamond = next(line for label, line in drawn.items() if line.get_marker() == "D")
+    diamond = next(line for line in axes.get_lines() if line.get_marker() == "D")
     assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == onset
     with pytest.raises(InputError, match="at least one run"):
         calibration(table[:0], fit)
