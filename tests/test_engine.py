@@ -113,6 +113,44 @@ def test_two_monomers_that_meet_stick_and_lose_energy():
     )
 
 
+def turned(state, omega, monomers=slice(None)):
+    """The state, with these monomers turning as a whole about z."""
+    rows = monomer_rows(state)[monomers]
+    rows[:, 4], rows[:, 5] = -omega * rows[:, 1], omega * rows[:, 0]
+    rows[:, 10] = omega
+    return state
+
+
+def test_a_grain_that_turns_as_a_whole_needs_no_new_lists():
+    omega = 2e7
+    state = relax(grow("BAM2", 100e-9, MATERIAL, 6))
+    state.scalar[layout.DT_DRIFT] = state.scalar[layout.DT]
+    before = monomer_rows(turned(state, omega))[:, :3].copy()
+    steps = int(2.0 / omega / state.scalar[layout.DT])  # two radians
+    state, code = _advance(state, AT_REST, np.inf, steps, -1, 0.125, True)
+    assert code == STEPS_DONE and state.counter[layout.SEARCHES] == 0
+    x, y = monomer_rows(state)[:, :2].T
+    angle = np.arctan2(before[:, 0] * y - before[:, 1] * x, before[:, 0] * x + before[:, 1] * y)
+    assert np.median(angle) == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_turning_grain_misses_no_contact():
+    """A monomer that meets the middle of a chain of three whose ends have moved by several reaches of the lists."""
+    a, omega = 20e-9, 5e7
+    chain = Grain(np.array([[0.0, 0, 0], [-2 * a, 0, 0], [2 * a, 0, 0], [0, 2 * a, 0]]), np.full(4, a), MATERIAL)
+    state = state_of(chain)
+    from ratd.engine.contacts import remove_contact
+
+    apart = next(k for k in range(3) if 3 in (int(state.pair_i[k]), int(state.pair_j[k])))
+    remove_contact(state, apart)
+    rows = monomer_rows(turned(state, omega, slice(3)))
+    rows[3, 1] += 30e-9
+    rows[3, 5] = -10.0
+    state, _ = _advance(state, AT_REST, np.inf, int(3.5e-9 / state.scalar[layout.DT]), -1, 0.125, True)
+    pairs = [{int(state.pair_i[k]), int(state.pair_j[k])} for k in range(state.counter[layout.CONTACTS])]
+    assert len(pairs) == 3 and {0, 3} in pairs
+
+
 def test_fragment_that_leaves_is_dropped_and_noted():
     grain = grow("BA", 100e-9, MATERIAL, 5)
     state = state_of(grain)

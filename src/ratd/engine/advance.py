@@ -53,13 +53,28 @@ def _positions(state):
 
 
 @jit
-def _farthest_move(state, reference):
-    """Greatest distance of any monomer from where it was [m]."""
+def _farthest_move(state, reference, turning):
+    """Greatest distance of any monomer from where it was [m].
+
+    With `turning` the monomers as a whole are first turned back about z: distances within a grain that only turns
+    do not change, however far its monomers go.
+    """
+    cos, sin = 1.0, 0.0
+    if turning:
+        along, across = 0.0, 0.0
+        for k in range(reference.shape[0]):
+            r = np.uint64(k) * _ROW
+            x, y = state.monomer[r + X], state.monomer[r + Y]
+            along += x * reference[k, 0] + y * reference[k, 1]
+            across += y * reference[k, 0] - x * reference[k, 1]
+        length = math.sqrt(along * along + across * across)
+        if length > 0.0:
+            cos, sin = along / length, across / length
     square = 0.0
     for k in range(reference.shape[0]):
         r = np.uint64(k) * _ROW
-        dx = state.monomer[r + X] - reference[k, 0]
-        dy = state.monomer[r + Y] - reference[k, 1]
+        dx = state.monomer[r + X] - (cos * reference[k, 0] - sin * reference[k, 1])
+        dy = state.monomer[r + Y] - (cos * reference[k, 1] + sin * reference[k, 0])
         dz = state.monomer[r + Z] - reference[k, 2]
         square = max(square, dx * dx + dy * dy + dz * dz)
     return math.sqrt(square)
@@ -150,6 +165,8 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
     far = close_pairs(position, radius, far_reach)
     near = _near_pairs(state, far, near_reach)
     travel = 0.0
+    # without the outer torque the grain stays behind the frame
+    turning = not drive.torque
     fragments = find_fragments(state)
     changed = False
     omega, domega = angular_velocity(drive, scalar[TIME])
@@ -215,13 +232,13 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
                 changed = True
         travel += fastest * dt
         if travel > 0.5 * near_reach and not changed:
-            travel = _farthest_move(state, near_reference)
+            travel = _farthest_move(state, near_reference, turning)
             if travel > 0.25 * near_reach:
                 if fragments > 1 and drop_departed(state, fragments) > 0:
                     changed = True
                 else:
                     near_reference, radius = _positions(state)
-                    if _farthest_move(state, far_reference) > 0.5 * (far_reach - near_reach):
+                    if _farthest_move(state, far_reference, turning) > 0.5 * (far_reach - near_reach):
                         far_reference = near_reference
                         far = close_pairs(near_reference, radius, far_reach)
                         counter[SEARCHES] += 1
