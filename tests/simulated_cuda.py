@@ -216,6 +216,21 @@ def test_steps_are_those_of_the_processor(drive):
     assert_close(found, state, 1e-10)
 
 
+def test_a_grain_that_turns_as_a_whole_needs_no_new_search():
+    """In a few steps it turns by more than the reach of the far list, too fast to hold for long."""
+    omega = 1e10
+    state = shaken("BAM1", 90e-9, 2)
+    rows = monomer_rows(state)
+    rows[:, 4:11] = 0.0
+    rows[:, 4], rows[:, 5], rows[:, 10] = -omega * rows[:, 1], omega * rows[:, 0], omega
+    before = rows[:, :3].copy()
+    batch = Batch([state], 2)
+    run(batch, make_drive("literal", omega_1=1e8, angular_acceleration=1.0), 16)
+    found = batch.state(0)
+    moved = np.linalg.norm(monomer_rows(found)[:, :3] - before, axis=1)
+    assert moved.max() > 0.6 * cpu_advance.FAR * rows[:, 3].mean() and found.counter[layout.SEARCHES] == 1
+
+
 def run(batch, drive, segment_end, expected=PAUSED):
     """Run the first grain of a batch with a drive up to a number of steps."""
     task = batch.host.task[0]

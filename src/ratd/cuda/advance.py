@@ -144,6 +144,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     goals = arena.goal[grain]
     law = drive_of(arena.drive[grain])
     relaxing = task[RELAXING] > 0
+    turning = not law.torque  # the grain stays behind the frame
     centre_every = RELAXATION_STEPS if relaxing else CENTRE_EVERY
 
     smallest, mean = radii(body, buffer)
@@ -185,7 +186,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             fragments = find_fragments(body, buffer, counts)
             centred = steps
         if renew or changed or stale:
-            if far_pairs < 0 or farthest_move(body, FAR_REFERENCE, buffer) > 0.5 * (far_reach - near_reach):
+            if far_pairs < 0 or farthest_move(body, FAR_REFERENCE, turning, buffer) > 0.5 * (far_reach - near_reach):
                 far_pairs = find_far(body, far_reach, counts)
                 if thread == 0:
                     counter[SEARCHES] += 1
@@ -277,7 +278,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             cuda.syncthreads()
         travel += fastest * dt
         if travel > 0.5 * near_reach and not changed:
-            travel = farthest_move(body, NEAR_REFERENCE, buffer)
+            travel = farthest_move(body, NEAR_REFERENCE, turning, buffer)
             if travel > 0.25 * near_reach:
                 dropped = False
                 if fragments > 1:

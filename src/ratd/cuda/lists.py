@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ratd.cuda.arena import RESULTS
-from ratd.cuda.block import block_max, chunk_of, prefix_sum, sum_before
+from ratd.cuda.block import block_max, block_sum, chunk_of, prefix_sum, sum_before
 from ratd.cuda.device import cuda, device_function
 from ratd.engine.advance import gap
 from ratd.engine.contacts import contact_start, contact_timestep
@@ -106,14 +106,32 @@ def keep_reference(body, column):
 
 
 @device_function
-def farthest_move(body, column, buffer):
-    """Greatest distance [m] of any monomer from where it was when `keep_reference` noted it."""
+def farthest_move(body, column, turning, buffer):
+    """Greatest distance [m] of any monomer from where it was when `keep_reference` noted it.
+
+    With `turning` less a turn of all about z, as on the processor (`ratd.engine.advance`).
+    """
     monomer = body.state.monomer
+    cos = 1.0
+    sin = 0.0
+    if turning:
+        along = 0.0
+        across = 0.0
+        for k in range(cuda.threadIdx.x, body.state.counter[MONOMERS], cuda.blockDim.x):
+            r = np.uint64(k) * _ROW
+            along += monomer[r + X] * body.reference[k, column] + monomer[r + Y] * body.reference[k, column + 1]
+            across += monomer[r + Y] * body.reference[k, column] - monomer[r + X] * body.reference[k, column + 1]
+        along = block_sum(along, buffer)
+        across = block_sum(across, buffer)
+        length = math.sqrt(along * along + across * across)
+        if length > 0.0:
+            cos = along / length
+            sin = across / length
     square = 0.0
     for k in range(cuda.threadIdx.x, body.state.counter[MONOMERS], cuda.blockDim.x):
         r = np.uint64(k) * _ROW
-        dx = monomer[r + X] - body.reference[k, column]
-        dy = monomer[r + Y] - body.reference[k, column + 1]
+        dx = monomer[r + X] - (cos * body.reference[k, column] - sin * body.reference[k, column + 1])
+        dy = monomer[r + Y] - (cos * body.reference[k, column + 1] + sin * body.reference[k, column])
         dz = monomer[r + Z] - body.reference[k, column + 2]
         square = max(square, dx * dx + dy * dy + dz * dz)
     return math.sqrt(block_max(square, buffer))
