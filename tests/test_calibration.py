@@ -51,7 +51,7 @@ def test_marks_of_real_runs_lie_in_order(runs, table):
 def test_runs_with_another_step_stand_for_the_printed_one(table):
     """The same d omega/dt over the step: the onset of this grain differs by 5 % where d omega/dt differs by 2.5."""
     pairs = step_ratios(table)
-    assert pairs[["seed", "timestep_factor"]].values.tolist() == [[0, 0.05]]
+    assert pairs[["seed", "timestep_factor", "shortest_factor"]].values.tolist() == [[0, 0.05, 0.02]]
     ratio = table["omega_mass_99"][1] / table["omega_mass_99"][0]
     assert pairs["ratio"].tolist() == [ratio] and ratio == pytest.approx(1.0, abs=0.05)
     assert not len(step_ratios(table[table["timestep_factor"] == 0.05]))

@@ -193,7 +193,7 @@ def test_studies_are_told_from_their_columns(folder):
     assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
     assert f"| {FORMULAE['damping']} | 0.600 ± 0.07" in text and "| 0.8 | 2 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs" in text
-    assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times" in text
+    assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times that with f = 0.02" in text
 
 
 def test_fig_1_is_as_printed():

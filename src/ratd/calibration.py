@@ -88,7 +88,7 @@ def calibration_table(runs):
 
 
 def step_ratios(table, mark=ONSET):
-    """Onset of mass loss with a longer step over that with the printed one, at the same d omega/dt over the step.
+    """Onset of mass loss with a longer step over that with a shorter one, at the same d omega/dt over the step.
 
     Parameters
     ----------
@@ -100,14 +100,17 @@ def step_ratios(table, mark=ONSET):
     Returns
     -------
     pandas.DataFrame
-        One row a pair of runs of one grain: seed, printed_acceleration, timestep_factor (of the longer step), ratio.
+        One row a run with a longer step than another of the same grain: seed, printed_acceleration, timestep_factor,
+        shortest_factor (of the run that it is compared with, the one with the shortest step), ratio.
     """
     key = ["seed", "printed_acceleration"]
     own = table.assign(printed_acceleration=[float(f"{value:.6g}") for value in table["printed_acceleration"]])
-    printed = own["timestep_factor"] == PRINTED_STEP
-    pairs = own[~printed].merge(own[printed][[*key, mark]], on=key, suffixes=("", "_printed"))
-    pairs["ratio"] = pairs[mark] / pairs[f"{mark}_printed"]
-    return pairs.loc[pairs["ratio"].notna(), [*key, "timestep_factor", "ratio"]].reset_index(drop=True)
+    own = own[own[mark].notna()]
+    shortest = own.loc[own.groupby(key)["timestep_factor"].idxmin(), [*key, "timestep_factor", mark]]
+    pairs = own.merge(shortest.rename(columns={"timestep_factor": "shortest_factor", mark: "shortest"}), on=key)
+    pairs = pairs[pairs["timestep_factor"] > pairs["shortest_factor"]]
+    pairs = pairs.assign(ratio=pairs[mark] / pairs["shortest"])
+    return pairs[[*key, "timestep_factor", "shortest_factor", "ratio"]].reset_index(drop=True)
 
 
 def calibrate(table, omega_onset, mark=ONSET):

@@ -143,23 +143,28 @@ def calibration_section(data):
         pairs = step_ratios(found.to_dataframe())
         if len(pairs):
             own = median_of(pairs["ratio"], pairs["seed"])
-            steps = ", ".join(f"{f:g}" for f in sorted(pairs["timestep_factor"].unique()))
+            longer, shorter = (
+                ", ".join(f"{f:g}" for f in sorted(pairs[name].unique()))
+                for name in ("timestep_factor", "shortest_factor")
+            )
             parts.append(
                 f"It is the rate at the printed step, f = {PRINTED_STEP:g}. Only d omega/dt over the step counts, so "
                 "runs with a longer step and a d omega/dt that is as much greater, which are far cheaper, stand for "
-                f"it: in {plural(len(pairs), 'pair')} of runs of the same grain the onset with f = {steps} lies at "
-                f"{with_error(own['median'], own['error'])} times that with the printed step "
+                f"it: in {plural(len(pairs), 'pair')} of runs of the same grain the onset with f = {longer} lies at "
+                f"{with_error(own['median'], own['error'])} times that with f = {shorter} "
                 f"({between(pairs['ratio'].min(), pairs['ratio'].max())})."
             )
     parts += solid_parts(data)
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
+        rate = printed_rate(data)
+        stands = "" if rate is None else f", which stands for {number(rate)} rad/s² at the printed step"
         parts.append(
             f"The grains of the drive `literal` here were spun up with {data.plan.pace('literal')} and f = "
-            f"{law['timestep_factor']:g}{_at_printed_step(law)}. The table sets them beside Eq. 33 with Table 3 for "
-            "the same grains: level (median of the ratio), and how the types are ordered at the sizes that all of them "
-            "have, from the lowest omega to the highest."
+            f"{law['timestep_factor']:g}{stands}. The table sets them beside Eq. 33 with Table 3 for the same grains: "
+            "level (median of the ratio), and how the types are ordered at the sizes that all of them have, from the "
+            "lowest omega to the highest."
         )
         rows = []
         for name, part in table.groupby("material", sort=False):
@@ -172,12 +177,11 @@ def calibration_section(data):
     return "\n\n".join(parts)
 
 
-def _at_printed_step(law):
-    """Words on the d omega/dt that a literal run stands for; none where it has the printed step itself."""
-    rate, factor = law["angular_acceleration"], law["timestep_factor"]
-    if rate is None or factor == PRINTED_STEP:
-        return ""
-    return f", which stands for {number(rate * PRINTED_STEP / factor)} rad/s² at the printed step"
+def printed_rate(data):
+    """d omega/dt [rad/s2] at the printed step that the runs of the drive `literal` stand for; None without one."""
+    law = data.plan.spin_up_of("literal")
+    rate = law["angular_acceleration"]
+    return None if rate is None else rate * PRINTED_STEP / law["timestep_factor"]
 
 
 def solid_parts(data):

@@ -6,7 +6,7 @@ from ratd.beyond import cross_validation, slopes
 from ratd.composition import table1, table2
 from ratd.figures.style import plural
 from ratd.reproduction import grown
-from ratd.reproduction.argument import calibrated_grains
+from ratd.reproduction.argument import calibrated_grains, printed_rate
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.text import between, number, with_error
 from ratd.statistics import median_of
@@ -28,7 +28,7 @@ def summary(data, rows):
     """
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
     lines = [_verdict(drive, rows) for drive in tables]
-    lines += [_level(f"omega_disr, drive `{drive}`", table) for drive, table in tables.items()]
+    lines += [_level(f"omega_disr, drive `{drive}`{_rate(data, drive)}", table) for drive, table in tables.items()]
     calibrated = calibrated_grains(data)
     if calibrated is not None and calibrated["printed_over_found"].notna().any():
         name = (
@@ -50,6 +50,12 @@ def _verdict(drive, rows):
         f"**Drive `{drive}`**: {sum(known)} of the {len(known)} printed numbers and findings that these data decide "
         f"hold; {len(rows) - len(known)} are left open."
     )
+
+
+def _rate(data, drive):
+    """Words on the free number of the drive `literal`."""
+    rate = printed_rate(data) if drive == "literal" else None
+    return "" if rate is None else f" with d omega/dt = {number(rate)} rad/s² at the printed step"
 
 
 def _level(name, table):
