@@ -1,5 +1,6 @@
 """The data of the document: what is collected, what stays, and what need not be spun up again."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,7 +40,7 @@ def plan_with(number=4, figure5_seed=1, **changes):
     return replace(plan, config=merge(plan.config | own, changes))
 
 
-def write_runs(path, seeds, source="a"):
+def write_runs(path, seeds, source="a", plan=None):
     """A file of made-up runs; the numbers of a run depend on its seed alone."""
     made = []
     for seed in seeds:
@@ -47,7 +48,9 @@ def write_runs(path, seeds, source="a"):
         run.attrs |= {"a_eff": 100e-9, "cut_bound": 1e8}
         made.append(run)
     rows = [io.run_row(run) for run in made]
-    io.write(path, io.block(rows, "spinup", MATERIALS["q-S"], {"code_hash": source}), "spinup")
+    settings = json.dumps((plan or plan_with()).spin_up("prescribed", *CELL, "0-2"))
+    attributes = {"code_hash": source, "settings": settings}
+    io.write(path, io.block(rows, "spinup", MATERIALS["q-S"], attributes), "spinup")
     return made
 
 
@@ -67,7 +70,7 @@ def collect(folder, plan, seeds, source="a", grown=None):
     collection.grown(*([folder.parent / "grown.nc"] if grown else []))
     path = folder.parent / "runs.nc"
     if seeds:
-        write_runs(path, seeds, source)
+        write_runs(path, seeds, source, plan)
     collection.runs([path] if seeds else [], "prescribed")
     collection.finish("make it")
 
@@ -180,6 +183,14 @@ def test_grains_that_figures_show_anew_are_made_anew(tmp_path):
     collect(folder, plan_with(figure5_seed=None), [])
     assert not (folder / "figure5").exists() or not list((folder / "figure5").iterdir())
     assert Collected(folder, plan_with(figure5_seed=2)).missing("prescribed") == [(CELL, "2-2")]
+
+
+def test_results_of_another_law_are_refused(tmp_path):
+    """Asked to look at times alone, Snakemake takes files for up to date that were made with other settings."""
+    collection = Collection(tmp_path / "data", plan_with(), PROVENANCE)
+    write_runs(tmp_path / "runs.nc", [0], plan=plan_with(spin_up={"timestep_factor": 0.1}))
+    with pytest.raises(FileError, match=r"runs\.nc: was made with timestep_factor = 0\.1, but the config has 0\.125"):
+        collection.runs([tmp_path / "runs.nc"], "prescribed")
 
 
 def test_source_of_each_piece_is_told(tmp_path):

@@ -1,5 +1,6 @@
 """Collect from the results of a run of the pipeline what the document is drawn from, a few MB."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import yaml
 
 from ratd import io
 from ratd.ensemble import GRAIN_COLUMNS, fit_ensemble, grain_table, sort_cells, table3_dataset, table_dataset
-from ratd.errors import InputError
+from ratd.errors import FileError, InputError
 from ratd.figures.figure5 import nearest_snapshots
 from ratd.fragmentation import fragmentation, join
 from ratd.markdown import markdown_table
@@ -99,6 +100,7 @@ class Collection:
         marks_source = source_hash(modules=["ratd.marks"])
         for path in paths:
             file = io.read(path, "spinup")
+            self._check_law(path, file)
             for run in io.runs(file):
                 key = grain_key(run.attrs)
                 marks[key], fragments[key] = disruption(run), fragmentation(run, disruption(run))
@@ -121,6 +123,16 @@ class Collection:
                 material = self.plan.materials[next(iter(runs))[0]]
                 rows = io.block([io.run_row(runs[key]) for key in sorted(runs)], "spinup", material)
                 self._write(f"figure{number}/{drive}.nc", what, rows, "spinup")
+
+    def _check_law(self, path, file):
+        """Raise FileError where a file was made with another law than the config has: it would be taken for the new."""
+        made = json.loads(file.attrs["settings"])
+        for name, wanted in self.plan.spin_up_of(made["drive"], file.attrs["type"]).items():
+            if made[name] != wanted:
+                raise FileError(
+                    f"{path}: was made with {name} = {made[name]!r}, but the config has {wanted!r}; "
+                    "allowed: results of this config (remove the file to make it anew)"
+                )
 
     def _table(self, old, marks):
         """Table of the grains with new marks, and of those of an older table that have none."""
