@@ -196,6 +196,20 @@ def test_studies_are_told_from_their_columns(folder):
     assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times that with f = 0.02" in text
 
 
+def test_what_a_drive_was_fixed_on_decides_nothing(folder):
+    data = Data(str(folder))
+    values = {"omega_onset": 3e8, "calibrated": 1e15, "exponent": 0.3, "exponent_error": 0.01}
+    runs = {"seed": [0], "printed_acceleration": [1e15], "timestep_factor": [0.02], "omega_mass_99": [3e8]}
+    runs = {name: ("entry", column) for name, column in runs.items()}
+    for low, fixed in ((9e14, True), (1.01e15, False)):
+        ends = {"calibrated_low": low, "calibrated_high": 1.1e15}
+        data.__dict__["calibration"] = xr.Dataset(values | ends | runs)
+        lines = report(data, "reproduction").splitlines()
+        row = next(line for line in lines if "mass constant up to" in line)
+        assert ("(fixed on this)" in row) == (fixed and "literal" in data.tables)
+        assert not fixed or "literal" not in data.tables or row.split(" | ")[8] == "–"
+
+
 def test_fig_1_is_as_printed():
     assert GRAINS["BAM2", 500] == (1814, 5546, 845.2) and len(GRAINS) == 9
     assert all(contacts >= monomers - 1 for monomers, contacts, _ in GRAINS.values())

@@ -184,6 +184,14 @@ def printed_rate(data):
     return None if rate is None else rate * PRINTED_STEP / law["timestep_factor"]
 
 
+def is_calibrated(data):
+    """Whether the drive `literal` was run with the d omega/dt that its calibration gives, within a standard error."""
+    rate = printed_rate(data)
+    if data.calibration is None or rate is None:
+        return False
+    return data.calibration["calibrated_low"].item() <= rate <= data.calibration["calibrated_high"].item()
+
+
 def solid_parts(data):
     """What the literal drive would do at the calibrated rate, from the grains of the drive `prescribed`; paragraphs."""
     table = calibrated_grains(data)

@@ -9,6 +9,7 @@ from ratd.ensemble import cell_statistics
 from ratd.figures.figure8 import predictions
 from ratd.figures.figure10 import relative_error
 from ratd.marks import disruption
+from ratd.reproduction.argument import is_calibrated
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import (
     NEAR,
@@ -97,7 +98,7 @@ def _course(data):
         return evaluate
 
     return [
-        drive_rows("onset", cell, lambda t, p: _median(t["omega_first_loss"], p), LEVEL),
+        _onset(data, cell),
         drive_rows(
             "decade",
             cell,
@@ -121,6 +122,16 @@ def _course(data):
             "are not spun up further in either.",
         ),
     ]
+
+
+def _onset(data, cell):
+    """Where mass loss begins in Fig. 4, which decides nothing about a drive that was fixed on it."""
+    row = drive_rows("onset", cell, lambda t, p: _median(t["omega_first_loss"], p), LEVEL)
+    own = row.answers.get("literal")
+    if own is None or not is_calibrated(data):
+        return row
+    fixed = replace(own, text=f"{own.text} (fixed on this)", holds=None)
+    return replace(row, answers=row.answers | {"literal": fixed})
 
 
 def _mass_at(run, omega):
