@@ -9,6 +9,7 @@ would grow and spin it up with the same settings; the source may have changed si
 import csv
 from collections import Counter
 from dataclasses import astuple, dataclass, fields, replace
+from io import StringIO
 from itertools import groupby
 from pathlib import Path
 
@@ -115,7 +116,9 @@ class Collected:
         for place, grains in sorted(self.grains.items(), key=lambda item: (*item[0][:3], float(item[0][3]))):
             for origin, alike in groupby(sorted(grains), key=grains.get):
                 rows += [[*place, part[0], part[-1], *astuple(origin)] for part in consecutive(alike)]
-        io.write_text(self._path, "".join(f"{','.join(map(str, row))}\n" for row in rows))
+        text = StringIO()
+        csv.writer(text, lineterminator="\n").writerows(rows)
+        io.write_text(self._path, text.getvalue())
 
     def add(self, drive, cell, seed, source, marks_source=""):
         """Note a grain that is now part of the data."""
