@@ -1,5 +1,7 @@
 """Table of grains, statistics per cell, and the fit of Eq. 33."""
 
+from dataclasses import asdict, replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +12,7 @@ from ratd.ensemble import (
     TABLE_3,
     cell_statistics,
     eq33,
+    fit_as_configured,
     fit_ensemble,
     grain_table,
     radius_of_reading,
@@ -252,6 +255,14 @@ def test_fit_repeats_to_the_last_bit_whatever_the_order(table, fit):
     xr.testing.assert_identical(fit_ensemble(table.sample(frac=1, random_state=2), n_bootstrap=200), fit)
     xr.testing.assert_identical(fit_ensemble(table_dataset(grain_table(table)), n_bootstrap=200), fit)
     assert not np.array_equal(fit_ensemble(table, n_bootstrap=200, seed=1)["A_low"], fit["A_low"])
+
+
+def test_fit_as_configured_takes_every_setting(table):
+    table = table[table["material"] == "q-S"]
+    light = replace(get_material("q-S"), density=1000.0)
+    how = {"mean_monomer_radius": [3e-8], "bootstrap": 20, "confidence": 0.5, "seed": 3}
+    expected = fit_ensemble(table, [3e-8], n_bootstrap=20, confidence=0.5, seed=3, materials={"q-S": light})
+    xr.testing.assert_identical(fit_as_configured(table, how | {"materials": {"q-S": asdict(light)}}), expected)
 
 
 def test_further_materials_change_nothing(table, fit):

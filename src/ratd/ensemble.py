@@ -13,7 +13,7 @@ import xarray as xr
 from ratd.errors import InputError
 from ratd.grain import Grain
 from ratd.marks import VARIABLES as MARK_COLUMNS
-from ratd.materials import get_material
+from ratd.materials import Material, get_material
 
 TABLE_3 = {
     ("a-C", "BA"): (1.97, 0.10),
@@ -359,6 +359,31 @@ _FIT_MEANING = {
     "alpha_high": "upper end of the confidence interval of alpha",
     "scatter": "standard deviation of the residuals of ln omega",
 }
+
+
+def fit_as_configured(table, settings):
+    """Fit Eq. 33 as a config says.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or xarray.Dataset
+        See `fit_ensemble`.
+    settings : dict
+        From `ratd.config.Plan.ensemble`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `fit_ensemble`.
+    """
+    return fit_ensemble(
+        table,
+        settings["mean_monomer_radius"],
+        n_bootstrap=settings["bootstrap"],
+        confidence=settings["confidence"],
+        seed=settings["seed"],
+        materials={name: Material(**constants) for name, constants in settings["materials"].items()},
+    )
 
 
 def table3_dataset(fit):

@@ -1,27 +1,18 @@
 """Tabulate all grains, average them per cell, and fit Eq. 33 beside Table 3."""
 
 from ratd import io
-from ratd.ensemble import cell_statistics, fit_ensemble, grain_table, table3, table3_dataset, table_dataset
+from ratd.ensemble import cell_statistics, fit_as_configured, grain_table, table3, table3_dataset, table_dataset
 from ratd.jobs import Job
-from ratd.materials import Material
 
 with Job(snakemake) as job:
     output, settings = snakemake.output, job.settings
-    materials = {name: Material(**constants) for name, constants in settings["materials"].items()}
     grains = [row for path in snakemake.input.grains for row in io.read_grain_columns(path)]
     marks = [row for path in snakemake.input.marks for row in io.read_marks(path)]
     table = grain_table(grains, marks)
     # another drive may want more grains than this one
     table = table[table["drive"] == settings["drive"]].reset_index(drop=True)
     cells = cell_statistics(table)
-    fit = fit_ensemble(
-        table,
-        settings["mean_monomer_radius"],
-        n_bootstrap=settings["bootstrap"],
-        confidence=settings["confidence"],
-        seed=settings["seed"],
-        materials=materials,
-    )
+    fit = fit_as_configured(table, settings)
     io.write(output.table, table_dataset(table, "grain").assign_attrs(job.provenance), "table")
     io.write(output.cells, table_dataset(cells, "cell").assign_attrs(job.provenance), "cells")
     io.write(output.fit, table3_dataset(fit).assign_attrs(job.provenance), "fit")

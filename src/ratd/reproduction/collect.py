@@ -9,14 +9,14 @@ import xarray as xr
 import yaml
 
 from ratd import io
-from ratd.ensemble import GRAIN_COLUMNS, fit_ensemble, grain_table, sort_cells, table3_dataset, table_dataset
+from ratd.ensemble import GRAIN_COLUMNS, fit_as_configured, grain_table, sort_cells, table3_dataset, table_dataset
 from ratd.errors import FileError, InputError
 from ratd.figures.figure5 import nearest_snapshots
 from ratd.fragmentation import fragmentation, join
 from ratd.markdown import markdown_table
 from ratd.marks import disruption
 from ratd.provenance import file_hash, settings_hash, source_hash
-from ratd.reproduction.collected import AT_REST, INDEX, RECORDS, SNAPSHOTS, Collected, grain_key
+from ratd.reproduction.collected import AT_REST, INDEX, RECORDS, SNAPSHOTS, Collected, grain_key, table_keys
 from ratd.reproduction.data import CONFIG, GROWN
 from ratd.reproduction.kept import read_kept
 
@@ -83,7 +83,7 @@ class Collection:
         for cell in self.plan.cells:
             self.collected.grains.pop((AT_REST, *cell), None)
         file = io.read(path, "table")
-        for *cell, seed in _keys(file.to_pandas()):
+        for *cell, seed in table_keys(file.to_pandas()):
             self.collected.add(AT_REST, cell, seed, file.attrs["code_hash"])
 
     def runs(self, paths, drive):
@@ -103,7 +103,8 @@ class Collection:
             self._check_law(path, file)
             for run in io.runs(file):
                 key = grain_key(run.attrs)
-                marks[key], fragments[key] = disruption(run), fragmentation(run, disruption(run))
+                marks[key] = disruption(run)
+                fragments[key] = fragmentation(run, marks[key])
                 shown = self.collected.shown((drive, *key[:3]), key[3])
                 if RECORDS in shown:
                     course[key] = run.drop_dims(["snapshot", "monomer"], errors="ignore")
@@ -112,10 +113,10 @@ class Collection:
                 self.collected.add(drive, key[:3], key[3], file.attrs["code_hash"], marks_source)
         table = self._table(kept.table, marks)
         self._write(f"ensemble/{drive}/grains.nc", f"all grains, drive {drive}", table_dataset(table), "table")
-        fit = table3_dataset(self._fit(table, drive))
+        fit = table3_dataset(fit_as_configured(table, self.plan.ensemble(drive)))
         self._write(f"ensemble/{drive}/table3.nc", f"fit of Eq. 33, drive {drive}", fit, "fit")
         what = f"fragments that leave until half of the mass has left, drive {drive}"
-        joined = join([fragments[key] for key in _keys(table)]).assign_attrs(drive=drive)
+        joined = join([fragments[key] for key in table_keys(table)]).assign_attrs(drive=drive)
         self._write(f"fragments/{drive}.nc", what, joined, "fragments")
         for number, runs in ((4, course), (5, pictures)):
             if runs:
@@ -138,24 +139,13 @@ class Collection:
         """Table of the grains with new marks, and of those of an older table that have none."""
         parts = []
         if old is not None:
-            parts.append(old[[key not in marks for key in _keys(old)]])
+            parts.append(old[[key not in marks for key in table_keys(old)]])
         if marks:
             grown = io.read_table(self.folder / GROWN)[list(GRAIN_COLUMNS)]
-            parts.append(grain_table(grown[[key in marks for key in _keys(grown)]], list(marks.values())))
+            parts.append(grain_table(grown[[key in marks for key in table_keys(grown)]], list(marks.values())))
         if not parts:
             raise InputError(f"{self.folder}: there is no spin-up to collect, and none from before")
         return sort_cells(pd.concat(parts, ignore_index=True))
-
-    def _fit(self, table, drive):
-        own = self.plan.ensemble(drive)
-        return fit_ensemble(
-            table,
-            own["mean_monomer_radius"],
-            n_bootstrap=own["bootstrap"],
-            confidence=own["confidence"],
-            seed=own["seed"],
-            materials=self.plan.materials,
-        )
 
     def _write(self, name, what, dataset, kind):
         io.write(self._new(name, what), dataset.assign_attrs(self.provenance), kind)
@@ -216,11 +206,6 @@ by older source stay until they are dropped from `{index}`:
 
 {table}
 """
-
-
-def _keys(table):
-    """Key of each grain of a table, see `ratd.reproduction.collected.grain_key`."""
-    return [grain_key(row) for row in table.to_dict("records")]
 
 
 def _shown(run, mark):

@@ -154,11 +154,13 @@ class Collected:
             `RECORDS`, `SNAPSHOTS`.
         """
         drive, *cell = place
+        if drive == AT_REST:
+            return set()
         figure4, figure5 = (self._plan.config["figures"][name] for name in ("figure4", "figure5"))
         wanted = set()
-        if drive != AT_REST and figure4 is not None and tuple(cell) == cell_of(figure4):
+        if figure4 is not None and tuple(cell) == cell_of(figure4):
             wanted.add(RECORDS)
-        if drive != AT_REST and figure5 is not None and (*cell, seed) == (*cell_of(figure5), figure5["seed"]):
+        if figure5 is not None and (*cell, seed) == (*cell_of(figure5), figure5["seed"]):
             wanted.add(SNAPSHOTS)
         return wanted
 
@@ -209,6 +211,11 @@ def grain_key(values):
     """
     material, kind, a_eff, seed = (np.asarray(values[name]).item() for name in ("material", "type", "a_eff", "seed"))
     return material, kind, size_label(round(a_eff / NM, 6)), seed
+
+
+def table_keys(table):
+    """Key of each grain of a table (a DataFrame) in its order, list of tuples, see `grain_key`."""
+    return [grain_key(row) for row in table.to_dict("records")]
 
 
 def _words(names):

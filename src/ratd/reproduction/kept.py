@@ -6,7 +6,7 @@ import pandas as pd
 
 from ratd import io
 from ratd.errors import FileError
-from ratd.reproduction.collected import INDEX, RECORDS, SNAPSHOTS, grain_key
+from ratd.reproduction.collected import INDEX, RECORDS, SNAPSHOTS, grain_key, table_keys
 
 
 @dataclass
@@ -53,7 +53,7 @@ def read_kept(folder, drive, collected):
         return Kept()
     path = folder / f"ensemble/{drive}/grains.nc"
     table = io.read_table(path)
-    places = _those(path, {grain_key(row): k for k, row in enumerate(table.to_dict("records"))}, keys)
+    places = _those(path, {key: k for k, key in enumerate(table_keys(table))}, keys)
     path = folder / f"fragments/{drive}.nc"
     rows = [row.assign(row.attrs) for row in io.rows(io.read(path, "fragments"), "fragments")]
     fragments = _those(path, {grain_key(row): row for row in rows}, keys)
