@@ -117,6 +117,11 @@ def test_quick_is_three_of_each():
         ),
         ({"figures": {"figure9": {"sizes_nm": [75]}}}, "figures.figure9.sizes_nm[0] is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure9": {"T_vis_ps": [0]}}}, "figures.figure9.T_vis_ps[0] is 0", "above 0"),
+        (
+            {"figures": {"figure9": {"literal": {"timestep_factor": 2}}}},
+            "figures.figure9.literal.timestep_factor is 2",
+            "at most 1",
+        ),
         ({"figures": {"calibration": {"size_nm": 75}}}, "figures.calibration.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"formulae": {"size_nm": 75}}}, "figures.formulae.size_nm is 75", "one of the sizes_nm, 50"),
         ({"figures": {"formulae": {"types": ["RA"]}}}, "figures.formulae.types[0] is 'RA'", "BA, BAM1 or BAM2"),
@@ -277,8 +282,25 @@ def test_drives_have_spin_up_laws_of_their_own():
     plan = with_changes({"drives": ["prescribed", "literal"]})
     prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
     assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (EPSILON["BA"], None)
-    assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1e15)
+    assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1.25e14)
     assert prescribed["records"] == literal["records"]
+
+
+def test_figure9_has_a_pace_of_its_own_for_each_drive():
+    own = {"epsilon": 0.03, "timestep_factor": 0.01, "literal": {"angular_acceleration": 3e13, "timestep_factor": 0.04}}
+    plan = with_changes({"drives": ["prescribed", "literal"], "figures": {"figure9": own}})
+    laws = {drive: plan.parameters(drive, "BA", "100")[0]["spin_up"] for drive in ("prescribed", "literal")}
+    names = ("epsilon", "angular_acceleration", "timestep_factor")
+    assert [laws["prescribed"][name] for name in names] == [0.03, None, 0.01]
+    assert [laws["literal"][name] for name in names] == [None, 3e13, 0.04]
+
+
+def test_the_literal_paces_of_the_config_have_one_ratio():
+    """Only d omega/dt over the step counts (docs/model.md), so the ensemble and figure 9 are of one ratio."""
+    config = load(DEFAULT).config
+    first, second = config["literal"], config["figures"]["figure9"]["literal"]
+    ratio = first["angular_acceleration"] / first["timestep_factor"]
+    assert second["angular_acceleration"] / second["timestep_factor"] == pytest.approx(ratio)
 
 
 def test_epsilon_is_one_for_all_types_or_one_for_each():
@@ -287,7 +309,7 @@ def test_epsilon_is_one_for_all_types_or_one_for_each():
         assert each.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == epsilon
         assert same.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == 0.05
     assert each.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
-    assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1e+15 rad/s²"
+    assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1.25e+14 rad/s²"
     assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.005 (BAM2)"
 
 

@@ -43,6 +43,7 @@ TINY = {
             "T_vis_ps": [9],
             "epsilon": 0.2,
             "timestep_factor": 0.1,
+            "literal": {"angular_acceleration": 1.0e17, "timestep_factor": 0.1},
         },
         "calibration": {
             "size_nm": 50,

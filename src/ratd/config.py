@@ -720,13 +720,20 @@ class Plan:
         """Settings of the runs of figure 9 of one type and size, one a way (see `ratd.variations.spin_up_ways`)."""
         own = self.config["figures"]["figure9"]
         first = own["seeds"]["first"]
-        pace = {"epsilon": own["epsilon"], "angular_acceleration": None, "timestep_factor": own["timestep_factor"]}
+        paces = {
+            "prescribed": {
+                "epsilon": own["epsilon"],
+                "angular_acceleration": None,
+                "timestep_factor": own["timestep_factor"],
+            },
+            "literal": {"epsilon": None, **own["literal"]},
+        }
         return [
             {
                 "grain": self.grow(own["material"], kind, size),
                 "changed": way["changed"],
                 "seeds": list(range(first, first + own["seeds"]["number"])),
-                "spin_up": {"drive": drive} | self.spin_up_of(drive, kind) | (pace if drive == "prescribed" else {}),
+                "spin_up": {"drive": drive} | self.spin_up_of(drive, kind) | paces[drive],
             }
             for way in self.parameter_ways
         ]
