@@ -86,14 +86,28 @@ def test_slopes_on_both_sides_are_found(below, above):
     assert (row["sizes_below"], row["sizes_above"], row["n_grains"]) == (6, 6, 176)
 
 
-def test_bootstrap_errors_of_slopes_are_the_scatter_between_ensembles():
+def test_errors_of_slopes_are_the_scatter_between_ensembles():
+    """Also with a single grain of each size above the split, which counts as much as the eight of one below."""
+    table = power_table(-1.0, 0.0, noise=0.0)
+    table = table[(table["a_eff"] <= 300e-9) | (table["seed"] == 0)]
     made = []
-    for seed in range(40):
-        rows = power_table(-1.0, 0.0, noise=0.0)
-        rows["omega_disr"] *= np.random.default_rng(seed).lognormal(0, 0.1, len(rows))
-        made.append(rows)
-    found = np.std([slopes(rows)["change"].iloc[0] for rows in made[:12]], ddof=1)
-    assert slopes(made[0])["change_error"].iloc[0] == pytest.approx(found, rel=0.6)
+    for seed in range(200):
+        noise = np.random.default_rng(seed).lognormal(0, 0.1, len(table))
+        made.append(slopes(table.assign(omega_disr=table["omega_disr"] * noise)).iloc[0])
+    made = pd.DataFrame(made)
+    for name in ("below", "above", "change"):
+        scatter = made[name].std()
+        assert 0.85 < np.sqrt((made[f"{name}_error"] ** 2).mean()) / scatter < 1.4
+        assert abs(made[name].mean() - {"below": -1.0, "above": 0.0, "change": 1.0}[name]) < 4 * scatter / np.sqrt(200)
+
+
+def test_a_slope_does_not_hang_on_how_many_grains_each_size_has():
+    """omega that is not a power of size, seen with all grains and with fewer of the large ones."""
+    table = power_table(-1.0, -1.0, noise=0.0)
+    table["omega_disr"] *= np.exp(0.5 * np.log(table["a_eff"] / 300e-9) ** 2)
+    fewer = table[(table["seed"] == 0) | (table["a_eff"] < 120e-9) | (table["a_eff"] > 480e-9)]
+    for side in ("below", "above"):
+        assert slopes(fewer).iloc[0][side] == pytest.approx(slopes(table).iloc[0][side], rel=1e-9)
 
 
 def test_one_side_without_sizes_has_no_slope():
@@ -123,6 +137,7 @@ def test_shares_of_fragments():
             "grain": [0, 0, 0, 1, 1],
             "fragment_n_monomers": [1, 3, 20, 1, 4],
             "mass_fraction": [0.1, 0.1, 0.3, 0.25, 0.25],
+            "weight": 1.0,
             "half": [True, True, True, True, True],
             "disruption": [True, False, False, False, False],
         }
@@ -132,6 +147,9 @@ def test_shares_of_fragments():
     assert own["number_share"].tolist() == pytest.approx([0.4, 0.2, 0.2, 0.2])
     assert (own["n_fragments"].iloc[0], own["n_grains"].iloc[0]) == (5, 2)
     assert fragment_shares(fragments, "disruption")["mass_share"].tolist() == [1, 0, 0, 0]
+    own = fragment_shares(fragments.assign(weight=[0.5, 0.5, 0.5, 1.5, 1.5]), "half").set_index("class")
+    assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.425, 0.05, 0.375, 0.15])
+    assert own["number_share"].tolist() == pytest.approx([2 / 4.5, 0.5 / 4.5, 1.5 / 4.5, 0.5 / 4.5])
 
 
 @pytest.mark.parametrize("exponent", [1.5, 2.5])

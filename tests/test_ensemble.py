@@ -251,6 +251,33 @@ def test_bootstrap_agrees_with_the_textbook_error():
     assert float(narrow["A_high"] - narrow["A_low"]) < 0.5 * float(best["A_high"] - best["A_low"])
 
 
+def test_a_fit_does_not_hang_on_how_many_grains_each_size_has(table):
+    """omega that is no law of Eq. 33 and the same for all grains of a size, seen with all and with fewer of them."""
+    rows = table[(table["material"] == "q-S") & (table["type"] == "BA")].copy()
+    for _, here in rows.groupby("a_eff").groups.items():
+        for name in ("n_contacts", "filling_factor", "mean_monomer_radius", "omega_disr"):
+            rows.loc[here, name] = rows.loc[here[0], name]
+    rows["omega_disr"] *= np.where(rows["a_eff"] > rows["a_eff"].median(), 3.0, 1.0)
+    fewer = rows[(rows["seed"] == 0) | (rows["a_eff"] == rows["a_eff"].min())]
+    best, thin = (fit_ensemble(part, n_bootstrap=5) for part in (rows, fewer))
+    for name in ("A", "alpha"):
+        np.testing.assert_allclose(best[name], thin[name], rtol=1e-9)
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say_with_few_large_grains():
+    full = make_table(materials=("q-S",), types=("BA",), seeds=10, scatter=0.0)
+    large = full["a_eff"] > full["a_eff"].median()
+    rows = full[~large | (full["seed"] == 0)]
+    exact = fit_ensemble(rows, "own", n_bootstrap=2).squeeze()
+    inside = 0
+    for seed in range(100):
+        noise = np.random.default_rng(seed).lognormal(0, 0.2, len(rows))
+        made = rows.assign(omega_disr=rows["omega_disr"] * noise)
+        found = fit_ensemble(made, "own", n_bootstrap=200, confidence=0.8, seed=seed).squeeze()
+        inside += float(found["alpha_low"]) < float(exact["alpha"]) < float(found["alpha_high"])
+    assert 65 <= inside <= 95
+
+
 def test_fit_repeats_to_the_last_bit_whatever_the_order(table, fit):
     xr.testing.assert_identical(fit_ensemble(table.sample(frac=1, random_state=2), n_bootstrap=200), fit)
     xr.testing.assert_identical(fit_ensemble(table_dataset(grain_table(table)), n_bootstrap=200), fit)
@@ -290,8 +317,8 @@ def test_other_marks_can_be_fitted(table):
 def test_sparse_ensembles_say_what_is_missing(table):
     one_size = fit_ensemble(table[table["a_eff"] == 1e-7], n_bootstrap=5)
     assert one_size["A"].isnull().all() and "q-S BAM2: 6 usable grains of 1 sizes" in one_size.attrs["missing_fits"]
-    one_seed = fit_ensemble(table[table["seed"] == 0], n_bootstrap=5)
-    assert one_seed["A"].notnull().all() and one_seed["A_low"].isnull().all()
+    one_seed = fit_ensemble(table[table["seed"] == 0], n_bootstrap=200)
+    assert (one_seed["A_low"] < one_seed["A"]).all() and (one_seed["A"] < one_seed["A_high"]).all()
     hole = table[~((table["material"] == "q-S") & (table["type"] == "BA"))]
     best = fit_ensemble(hole, n_bootstrap=5)
     assert best["A"].isnull().sum() == 2 and best.attrs["missing_fits"] == "q-S BA: 0 usable grains of 0 sizes"

@@ -47,6 +47,9 @@ def test_the_table_tells_the_stages_of_each_grain_apart():
     assert table["mass_fraction"].tolist() == pytest.approx([0.1, 0.3, 0.2, 0.6, 0.2])
     assert table["disruption"].tolist() == [True, False, False, True, True]
     assert table["half"].tolist() == [True, True, True, True, False]
+    assert (table["weight"] == 1).all()
+    other = fragmentation(*run_and_mark([1], [5], 5.5, seed=7)).assign(a_eff=5e-8)
+    assert fragment_table(join([*rows, other]))["weight"].tolist() == pytest.approx([2 / 3] * 5 + [2])
     with pytest.raises(InputError, match="at least one grain"):
         join([])
 

@@ -198,11 +198,11 @@ def test_studies_are_told_from_their_columns(folder):
 
 def test_what_a_drive_was_fixed_on_decides_nothing(folder):
     data = Data(str(folder))
-    values = {"omega_onset": 3e8, "calibrated": 1e15, "exponent": 0.3, "exponent_error": 0.01}
-    runs = {"seed": [0], "printed_acceleration": [1e15], "timestep_factor": [0.02], "omega_mass_99": [3e8]}
+    values = {"omega_onset": 3e8, "calibrated": 2e13, "exponent": 0.3, "exponent_error": 0.01}
+    runs = {"seed": [0], "printed_acceleration": [2e13], "timestep_factor": [0.02], "omega_mass_99": [3e8]}
     runs = {name: ("entry", column) for name, column in runs.items()}
-    for low, fixed in ((9e14, True), (1.01e15, False)):
-        ends = {"calibrated_low": low, "calibrated_high": 1.1e15}
+    for low, fixed in ((1.9e13, True), (2.01e13, False)):
+        ends = {"calibrated_low": low, "calibrated_high": 2.1e13}
         data.__dict__["calibration"] = xr.Dataset(values | ends | runs)
         lines = report(data, "reproduction").splitlines()
         row = next(line for line in lines if "mass constant up to" in line)
@@ -259,7 +259,9 @@ def test_figures_are_drawn_from_what_is_there(folder):
 
 
 def test_fragments_are_drawn_for_each_drive_and_stage():
-    table = pd.DataFrame({"type": "BA", "mass_fraction": [0.1, 0.4], "disruption": [True, False], "half": True})
+    table = pd.DataFrame(
+        {"type": "BA", "mass_fraction": [0.1, 0.4], "weight": 1.0, "disruption": [True, False], "half": True}
+    )
     drawn = figures.fragments({"prescribed": table, "literal": table})
     assert len(drawn.axes) == 4
     mass, count = (line.get_ydata()[-1] for line in drawn.axes[0].lines)

@@ -9,9 +9,10 @@ from statistics import NormalDist
 import numpy as np
 import pandas as pd
 
-from ratd.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading, resample_within, size_key
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, eq33, fit_ensemble, radius_of_reading, size_key
 from ratd.errors import InputError
 from ratd.materials import get_material
+from ratd.statistics import equal_weights, mean_of, slope_error, slope_of
 
 SPLIT = 300e-9
 """Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
@@ -48,7 +49,7 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
     pandas.DataFrame
         A row for each of `PREDICTORS` and for each type and "all": scatter (root mean square of the residuals of
         ln omega out of sample), error (bootstrap over grains), bias (mean residual, found - predicted), n_grains. Only
-        grains count that all predictors predict.
+        grains count that all predictors predict; all cells count alike.
 
     Raises
     ------
@@ -68,17 +69,20 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
             continue
         train, test = table[~out], table[out]
         residual.loc[out, "Eq. 33"] = np.log(test[mark] / _predict_eq33(train, test, mark, materials))
-        ratio = np.log(train[mark] / train["cut_bound"])
+        ratio = pd.DataFrame({"type": train["type"], "log": np.log(train[mark] / train["cut_bound"])})
+        ratio["cell"] = cell_of(train)
         own = np.log(test[mark] / test["cut_bound"])
-        residual.loc[out, "cut bound"] = own - ratio.mean()
-        residual.loc[out, "cut bound by type"] = own - test["type"].map(ratio.groupby(train["type"]).mean())
+        residual.loc[out, "cut bound"] = own - mean_of(ratio["log"], ratio["cell"])[0]
+        of_type = {kind: mean_of(part["log"], part["cell"])[0] for kind, part in ratio.groupby("type")}
+        residual.loc[out, "cut bound by type"] = own - test["type"].map(of_type)
     known = residual.notna().all(axis=1)
     rows = []
     for kind in [*dict.fromkeys(table["type"]), "all"]:
         chosen = known if kind == "all" else known & (table["type"] == kind)
         for name in PREDICTORS:
             values = residual.loc[chosen, name].to_numpy()
-            rows.append({"type": kind, "predictor": name, **_scatter(values, rng), "n_grains": len(values)})
+            weights = equal_weights(cell_of(table[chosen]))
+            rows.append({"type": kind, "predictor": name, **_scatter(values, weights, rng), "n_grains": len(values)})
     return pd.DataFrame(rows)
 
 
@@ -98,19 +102,20 @@ def _predict_eq33(train, test, mark, materials):
     return predicted
 
 
-def _scatter(values, rng):
+def _scatter(values, weights, rng):
     """Root mean square with its bootstrap error, and mean."""
     if len(values) < 2:
         return {"scatter": np.nan, "error": np.nan, "bias": np.nan}
-    drawn = values[rng.integers(len(values), size=(N_BOOTSTRAP, len(values)))]
+    drawn = rng.integers(len(values), size=(N_BOOTSTRAP, len(values)))
+    squares = np.average(values[drawn] ** 2, axis=1, weights=weights[drawn])
     return {
-        "scatter": float(np.sqrt(np.mean(values**2))),
-        "error": float(np.std(np.sqrt(np.mean(drawn**2, axis=1)), ddof=1)),
-        "bias": float(values.mean()),
+        "scatter": float(np.sqrt(np.average(values**2, weights=weights))),
+        "error": float(np.std(np.sqrt(squares), ddof=1)),
+        "bias": float(np.average(values, weights=weights)),
     }
 
 
-def slopes(table, mark="omega_disr", split=SPLIT, seed=0):
+def slopes(table, mark="omega_disr", split=SPLIT):
     """d ln omega/d ln a_eff below and above a size, and their difference: whether omega flattens.
 
     Parameters
@@ -121,53 +126,33 @@ def slopes(table, mark="omega_disr", split=SPLIT, seed=0):
         omega [rad s-1].
     split : float
         Size [m]; grains of this size count on both sides.
-    seed : int
-        Of the bootstrap, which draws grains anew within each material and size.
 
     Returns
     -------
     pandas.DataFrame
-        A row a type: below, above, change (above - below) with `_error` (standard deviation of the bootstrap);
-        sizes_below, sizes_above, n_grains. Materials are taken together, each with a level of its own. NaN where a side
-        has fewer than two sizes.
+        A row a type: below, above, change (above - below) with `_error` (`ratd.statistics.slope_error`); sizes_below,
+        sizes_above, n_grains. Materials are taken together, each with a level of its own, and all cells of a side count
+        alike. NaN where a side has fewer than two sizes.
     """
     table = table[table[mark].astype(float) > 0]
-    rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
     for kind, part in table.groupby("type", sort=False):
         size = size_key(part["a_eff"]).to_numpy()
         edge = size_key(pd.Series([split])).iloc[0]
-        cell = part.groupby(["material", size], sort=False).ngroup().to_numpy()
-        material = pd.factorize(part["material"])[0]
+        cell, material = cell_of(part), pd.factorize(part["material"])[0]
         x, y = np.log(part["a_eff"].to_numpy(float)), np.log(part[mark].to_numpy(float))
-        sides = {"below": size <= edge, "above": size >= edge}
-        drawn = resample_within(cell, N_BOOTSTRAP, rng)
         row = {"type": kind, "n_grains": len(part)}
-        replicates = {}
-        for side, chosen in sides.items():
-            n_sizes = len(np.unique(size[chosen]))
-            row[f"sizes_{side}"] = n_sizes
-            row[side], replicates[side] = np.nan, np.full(N_BOOTSTRAP, np.nan)
-            if n_sizes < 2:
-                continue
-            row[side] = _common_slope(x[chosen], y[chosen], material[chosen])
-            if drawn is not None:
-                replicates[side] = np.array(
-                    [_common_slope(x[here], y[here], material[here]) for here in (d[chosen[d]] for d in drawn)]
-                )
+        influence = {}
+        for side, chosen in {"below": size <= edge, "above": size >= edge}.items():
+            influence[side] = np.zeros(len(part))
+            row[f"sizes_{side}"] = len(np.unique(size[chosen]))
+            row[side], influence[side][chosen] = slope_of(
+                x[chosen], y[chosen], material[chosen], equal_weights(cell[chosen])
+            )
         row["change"] = row["above"] - row["below"]
-        replicates["change"] = replicates["above"] - replicates["below"]
-        rows.append(row | {f"{name}_error": float(np.std(values, ddof=1)) for name, values in replicates.items()})
+        influence["change"] = influence["above"] - influence["below"]
+        rows.append(row | {f"{name}_error": slope_error(values) for name, values in influence.items()})
     return pd.DataFrame(rows)
-
-
-def _common_slope(x, y, group):
-    """Slope of y on x with a level of its own for each group."""
-    weight = np.bincount(group)
-    weight[weight == 0] = 1
-    x = x - (np.bincount(group, x) / weight)[group]
-    y = y - (np.bincount(group, y) / weight)[group]
-    return float(np.sum(x * y) / np.sum(x * x))
 
 
 def binomial_interval(k, n, confidence=0.95):
@@ -243,7 +228,8 @@ def fragment_shares(fragments, stage, seed=0):
     Returns
     -------
     pandas.DataFrame
-        A row a type and class: mass_share and number_share with `_error`; n_fragments, n_grains (that lost any).
+        A row a type and class: mass_share and number_share with `_error`; n_fragments, n_grains (that lost any). Each
+        fragment has the weight of its grain.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
@@ -253,8 +239,8 @@ def fragment_shares(fragments, stage, seed=0):
         grain = pd.factorize(part["grain"])[0]
         n = grain.max() + 1
         mass, number = np.zeros((n, len(MONOMER_CLASSES))), np.zeros((n, len(MONOMER_CLASSES)))
-        np.add.at(mass, (grain, which), part["mass_fraction"])
-        np.add.at(number, (grain, which), 1.0)
+        np.add.at(mass, (grain, which), part["weight"] * part["mass_fraction"])
+        np.add.at(number, (grain, which), part["weight"])
         drawn = rng.integers(n, size=(N_BOOTSTRAP, n))
         shares = {}
         for name, values in (("mass_share", mass), ("number_share", number)):

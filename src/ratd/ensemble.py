@@ -14,6 +14,7 @@ from ratd.errors import InputError
 from ratd.grain import Grain
 from ratd.marks import VARIABLES as MARK_COLUMNS
 from ratd.materials import Material, get_material
+from ratd.statistics import equal_weights
 
 TABLE_3 = {
     ("a-C", "BA"): (1.97, 0.10),
@@ -234,10 +235,10 @@ def fit_ensemble(
 ):
     """Fit Eq. 33 to the grains of each (material, type).
 
-    ln(omega a_eff sqrt(rho <a_mon>/gamma)) = ln A + alpha ln(N_con phi) is solved by least squares over the grains,
-    each with the same weight. The confidence intervals are percentiles of a bootstrap that draws grains anew within
-    each size, so that every replicate has the sizes of the ensemble. A size with a single grain cannot vary: it makes
-    the intervals too narrow, and without any size of two grains or more they are NaN.
+    ln(omega a_eff sqrt(rho <a_mon>/gamma)) = ln A + alpha ln(N_con phi) is solved by least squares over the grains.
+    All sizes count alike, as in the paper, where each has 30 grains: a law that does not hold exactly would else depend
+    on how many grains of each size there happen to be. The confidence intervals are percentiles of a bootstrap that
+    draws grains anew from all sizes, so that a size with a single grain counts as uncertain, too.
 
     Parameters
     ----------
@@ -311,21 +312,22 @@ def fit_ensemble(
             if len(rows) < 3 or n_sizes[i, j] < 2 or np.ptp(x) == 0:
                 missing.append(f"{material_name} {kind}: {len(rows)} usable grains of {n_sizes[i, j]} sizes")
                 continue
-            drawn = resample_within(size, n_bootstrap, _generator(seed, material_name, kind))
+            weights = equal_weights(size)
+            generator = _generator(seed, material_name, kind)
+            drawn = generator.integers(len(rows), size=(n_bootstrap, len(rows)))
             for k, reading in enumerate(readings.values()):
                 radius = rows["mean_monomer_radius"].to_numpy(float) if reading == "own" else reading
                 unit = eq33(
                     rows["a_eff"].to_numpy(float), material.surface_energy, material.density, radius, 1, 1, 1, 0
                 )
                 y = np.log(rows[mark].to_numpy(float) / unit)
-                alpha, log_a = _line(x, y)
+                alpha, log_a = _line(x, y, weights)
                 result["A"][k, i, j], result["alpha"][k, i, j] = np.exp(log_a), alpha
                 residual = y - log_a - alpha * x
-                result["scatter"][k, i, j] = np.sqrt(np.sum(residual**2) / (len(y) - 2))
-                if drawn is not None:
-                    alphas, log_as = _line(x[drawn], y[drawn])
-                    result["A_low"][k, i, j], result["A_high"][k, i, j] = np.exp(np.nanquantile(log_as, quantile))
-                    result["alpha_low"][k, i, j], result["alpha_high"][k, i, j] = np.nanquantile(alphas, quantile)
+                result["scatter"][k, i, j] = np.sqrt(np.sum(weights * residual**2) / (len(y) - 2))
+                alphas, log_as = _line(x[drawn], y[drawn], weights[drawn])
+                result["A_low"][k, i, j], result["A_high"][k, i, j] = np.exp(np.nanquantile(log_as, quantile))
+                result["alpha_low"][k, i, j], result["alpha_high"][k, i, j] = np.nanquantile(alphas, quantile)
 
     fit = xr.Dataset(
         coords={
@@ -494,6 +496,12 @@ def _describe(name):
     return {"units": units, "long_name": meaning} if units else {"long_name": meaning}
 
 
+def cell_of(table):
+    """Number of the cell (material, type, size) of each grain of a table, array of int."""
+    keys = [table["material"], table["type"], size_key(table["a_eff"])]
+    return table.groupby(keys, sort=False).ngroup().to_numpy()
+
+
 def size_key(a_eff):
     """Sizes [m], a Series, as whole picometres, so that rounding in the last digit makes no new size."""
     return np.rint(a_eff.astype(float) / 1e-12).astype(np.int64)
@@ -627,31 +635,11 @@ def _generator(seed, material, kind):
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, key])))
 
 
-def resample_within(group, n, rng):
-    """Row numbers drawn with replacement within each group.
-
-    Parameters
-    ----------
-    group : numpy.ndarray, shape (rows,)
-        Group of each row.
-    n : int
-        Replicates.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    numpy.ndarray or None
-        Shape (n, rows), the rows of a group next to each other; None if every group has one row.
-    """
-    rows = [np.flatnonzero(group == value) for value in np.unique(group)]
-    if all(len(row) == 1 for row in rows):
-        return None
-    return np.concatenate([row[rng.integers(len(row), size=(n, len(row)))] for row in rows], axis=1)
-
-
-def _line(x, y):
+def _line(x, y, weights):
     """Slope and intercept of the least-squares line along the last axis."""
-    x_mean, y_mean = x.mean(axis=-1, keepdims=True), y.mean(axis=-1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):  # a replicate may draw equal x only: no slope, NaN
-        slope = np.sum((x - x_mean) * (y - y_mean), axis=-1) / np.sum((x - x_mean) ** 2, axis=-1)
+    total = weights.sum(axis=-1, keepdims=True)
+    x_mean, y_mean = ((weights * v).sum(axis=-1, keepdims=True) / total for v in (x, y))
+    spread = np.sum(weights * (x - x_mean) ** 2, axis=-1)
+    # a replicate may draw equal x only, which leaves rounding: no slope
+    slope = np.sum(weights * (x - x_mean) * (y - y_mean), axis=-1) / np.where(spread > 1e-20, spread, np.nan)
     return slope, y_mean[..., 0] - slope * x_mean[..., 0]

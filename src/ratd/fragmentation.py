@@ -10,7 +10,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ratd.ensemble import cell_of
 from ratd.errors import InputError
+from ratd.statistics import equal_weights
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
@@ -114,11 +116,14 @@ def fragment_table(dataset):
     -------
     pandas.DataFrame
         Columns of `COLUMNS` and `FRAGMENT_COLUMNS`; `grain`, the number of the grain; `mass_fraction`, the mass of the
-        fragment over that of the grain; `disruption` and `half`, whether it belongs to these `STAGES`.
+        fragment over that of the grain; `disruption` and `half`, whether it belongs to these `STAGES`; `weight` of the
+        grain, with which all cells (material, type, size) count alike.
     """
     size = dataset["row_size_fragment"].values
     table = pd.DataFrame({name: np.repeat(dataset[name].values, size) for name in COLUMNS})
     table["grain"] = np.repeat(np.arange(len(size)), size)
+    grains = pd.DataFrame({name: dataset[name].values for name in COLUMNS})
+    table["weight"] = np.repeat(equal_weights(cell_of(grains)), size)
     for name in FRAGMENT_COLUMNS:
         table[name] = dataset[name].values
     table["mass_fraction"] = table["fragment_mass"] / table["grain_mass"]

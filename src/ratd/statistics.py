@@ -1,11 +1,59 @@
-"""Medians with their uncertainty."""
+"""Medians, means and slopes with their uncertainty, of values of which some cells may have more than others."""
 
 import numpy as np
+
+__all__ = ["equal_weights", "mean_of", "median_of", "quantiles", "slope_error", "slope_of"]
 
 N_BOOTSTRAP = 2000
 
 
-def median_of(values, group=None, seed=0):
+def equal_weights(cell):
+    """Weights with which all cells count alike, however many values each of them has.
+
+    Parameters
+    ----------
+    cell : array_like, shape (n,)
+        Cell of each value.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n,)
+        1 in the mean, and exactly 1 each where all cells have as many values.
+    """
+    _, place, count = np.unique(np.asarray(cell), return_inverse=True, return_counts=True)
+    return len(place) / (len(count) * count[place])
+
+
+def quantiles(values, probabilities, weights=None):
+    """Quantiles of weighted values.
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+    probabilities : array_like
+    weights : array_like, shape (n,), optional
+        Default: 1 each.
+
+    Returns
+    -------
+    numpy.ndarray
+        Those of `numpy.quantile` of a sample of n in which each value stands as often as its weight says, 1 in the mean
+        (Harrell's wtd.quantile, type "quantile"): the weights need not be whole.
+    """
+    values = np.asarray(values, dtype=float)
+    n = len(values)
+    order = np.argsort(values, kind="stable")
+    weights = np.ones(n) if weights is None else np.asarray(weights, dtype=float)[order]
+    last = np.cumsum(weights) * (n / np.sum(weights))  # the last place in the sample that each value takes
+    place = 1.0 + (n - 1) * np.asarray(probabilities, dtype=float)
+    low = np.floor(place)
+    low, high = (
+        values[order][np.minimum(np.searchsorted(last, whole - 1e-9 * n), n - 1)] for whole in (low, low + 1.0)
+    )
+    return low + (place - np.floor(place)) * (high - low)
+
+
+def median_of(values, group=None, seed=0, cell=None):
     """Median, spread, and standard error of the median by bootstrap.
 
     Parameters
@@ -16,6 +64,8 @@ def median_of(values, group=None, seed=0):
         Values of the same group are drawn together (runs of the same grain); default: each value alone.
     seed : int
         Of the bootstrap.
+    cell : array_like, shape (n,), optional
+        Values of all cells count alike (`equal_weights`); default: each value does.
 
     Returns
     -------
@@ -26,14 +76,94 @@ def median_of(values, group=None, seed=0):
     values = np.asarray(values, dtype=float)
     group = np.arange(len(values)) if group is None else np.asarray(group)
     there = np.isfinite(values)
+    weights = np.ones(there.sum()) if cell is None else equal_weights(np.asarray(cell)[there])
     values, group = values[there], group[there]
     if not len(values):
         return dict(median=np.nan, error=np.nan, low=np.nan, high=np.nan, n=0)
-    low, median, high = np.quantile(values, [0.16, 0.5, 0.84])
-    members = [values[group == name] for name in dict.fromkeys(group.tolist())]
+    low, median, high = quantiles(values, [0.16, 0.5, 0.84], weights)
+    members = [np.flatnonzero(group == name) for name in dict.fromkeys(group.tolist())]
     error = np.nan
     if len(members) > 1:
         rng = np.random.Generator(np.random.PCG64(seed))
         draws = rng.integers(len(members), size=(N_BOOTSTRAP, len(members)))
-        error = float(np.std([np.median(np.concatenate([members[k] for k in draw])) for draw in draws], ddof=1))
+        drawn = (np.concatenate([members[k] for k in draw]) for draw in draws)
+        error = float(np.std([quantiles(values[own], 0.5, weights[own]) for own in drawn], ddof=1))
     return dict(median=float(median), error=error, low=float(low), high=float(high), n=len(values))
+
+
+def mean_of(values, cell=None):
+    """Mean and its standard error.
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+        What is not finite is left out.
+    cell : array_like, shape (n,), optional
+        Values of all cells count alike (`equal_weights`); default: each value does.
+
+    Returns
+    -------
+    mean, error : float
+        NaN without values; the error is NaN for fewer than two.
+    """
+    values = np.asarray(values, dtype=float)
+    there = np.isfinite(values)
+    values, n = values[there], int(there.sum())
+    if not n:
+        return np.nan, np.nan
+    weights = np.ones(n) if cell is None else equal_weights(np.asarray(cell)[there])
+    mean = float(np.sum(weights * values) / n)
+    if n < 2:
+        return mean, np.nan
+    return mean, float(np.sqrt(np.sum((weights * (values - mean)) ** 2) / (n * (n - 1))))
+
+
+def slope_of(x, y, group=None, weights=None):
+    """Slope of a straight line by least squares, and what it owes to each point.
+
+    Parameters
+    ----------
+    x, y : array_like, shape (n,)
+    group : array_like, shape (n,), optional
+        Lines of all groups have one slope, and each its own level; default: one line.
+    weights : array_like, shape (n,), optional
+        Default: 1 each.
+
+    Returns
+    -------
+    slope : float
+        NaN where no group has two different x.
+    influence : numpy.ndarray, shape (n,)
+        By how much the slope would be lower without the point; 0 for the only one of its group. `slope_error` makes
+        the standard error of them.
+
+    Notes
+    -----
+    The leave-one-out differences are exact: w x e/(S (1 - h)), with x from the mean of its group, S = sum of w x^2,
+    residual e and leverage h = w (1/sum of the weights of the group + x^2/S).
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    _, group = np.unique(np.zeros(len(x)) if group is None else np.asarray(group), return_inverse=True)
+    weights = np.ones(len(x)) if weights is None else np.asarray(weights, dtype=float)
+    level = np.bincount(group, weights)
+    x = x - (np.bincount(group, weights * x) / level)[group]
+    y = y - (np.bincount(group, weights * y) / level)[group]
+    spread = np.sum(weights * x * x)
+    if not spread > 1e-20:
+        return np.nan, np.full(len(x), np.nan)
+    slope = np.sum(weights * x * y) / spread
+    free = 1.0 - weights * (1.0 / level[group] + x * x / spread)
+    influence = np.zeros(len(x))
+    # a point that makes its line pass through it has no residual, and tells nothing of the error
+    known = free > 1e-9
+    influence[known] = (weights * x * (y - slope * x))[known] / (spread * free[known])
+    return float(slope), influence
+
+
+def slope_error(influence):
+    """Standard error of a slope, or of the difference of two, from influences of `slope_of` (or their difference).
+
+    The root of the sum of squares is the error HC3 of MacKinnon & White (1985, J. Econometrics 29, 305), which needs
+    neither the same scatter everywhere nor several points at one x. NaN where no three points have an influence.
+    """
+    return float(np.sqrt(np.sum(influence**2))) if np.count_nonzero(influence) > 2 else np.nan

@@ -4,13 +4,14 @@ import numpy as np
 
 from ratd.beyond import SPLIT
 from ratd.calibration import PRINTED_STEP, step_ratios
+from ratd.ensemble import cell_of
 from ratd.figures.style import plural
 from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table
 from ratd.reproduction.bounds import ratios, table3_omega
-from ratd.reproduction.text import NOTHING, between, mean_and_error, number, with_error
+from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.solid import solid_omega
-from ratd.statistics import median_of
+from ratd.statistics import equal_weights, mean_of, median_of, quantiles, slope_error, slope_of
 from ratd.units import NM
 from ratd.validation.show import lammps, literal
 
@@ -35,11 +36,11 @@ def bound_section(data):
                 continue
             printed = part["printed_over_bound"]
             cells = [kind, _sizes(part), str(len(part))]
-            cells += [_range(printed), _range(printed**2), _range(part["strength_over_bound"])]
+            cells += [_range(part, values) for values in (printed, printed**2, part["strength_over_bound"])]
             for table in tables.values():
                 sizes = table["a_eff"].between(part["a_eff"].min() * (1 - 1e-9), part["a_eff"].max() * (1 + 1e-9))
                 same = table[sizes & (table["type"] == kind)]
-                cells.append(_range(same["found_over_bound"]))
+                cells.append(_range(same, same["found_over_bound"]))
             rows.append(cells)
     head = ["type", "sizes", "grains", "Table 3", "the load of it", "tensile strength"]
     head += [f"omega_disr, {drive}" for drive in tables]
@@ -67,9 +68,9 @@ def _sizes(table):
     return f"{'–'.join(ends)} nm"
 
 
-def _range(values):
-    """Median and range of the middle two thirds, text."""
-    found = median_of(values)
+def _range(table, values):
+    """Median of values of the grains of a table, and range of the middle two thirds, text; all cells count alike."""
+    found = median_of(values, cell=cell_of(table))
     return f"{number(found['median'])} ({number(found['low'])}–{number(found['high'])})" if found["n"] else NOTHING
 
 
@@ -169,7 +170,7 @@ def calibration_section(data):
         rows = []
         for name, part in table.groupby("material", sort=False):
             levels = [
-                f"{kind} {_range(1 / own['printed_over_found'])}" for kind, own in part.groupby("type", sort=False)
+                f"{kind} {_range(own, 1 / own['printed_over_found'])}" for kind, own in part.groupby("type", sort=False)
             ]
             printed = part.assign(printed=part["printed_over_found"] * part["omega_disr"])
             rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
@@ -230,7 +231,14 @@ def solid_parts(data):
             sizes = _sizes(own)
             printed, _ = _slope(own.assign(omega_disr=table3_omega(own, data.plan.materials)))
             rows.append(
-                [name, kind, sizes, _range(1 / own["printed_over_found"]), with_error(slope, error), number(printed)]
+                [
+                    name,
+                    kind,
+                    sizes,
+                    _range(own, 1 / own["printed_over_found"]),
+                    with_error(slope, error),
+                    number(printed),
+                ]
             )
         printed = part.assign(printed=table3_omega(part, data.plan.materials))
         rows.append([name, "order", "", f"{_order(part, 'omega_disr')}; Table 3: {_order(printed, 'printed')}", "", ""])
@@ -288,13 +296,11 @@ def solid_prediction(table, acceleration):
 
 
 def _slope(table):
-    """Slope of ln omega_disr against ln a_eff, and its standard error."""
+    """Slope of ln omega_disr against ln a_eff, and its standard error; all cells count alike."""
     known = table[table["omega_disr"].notna()]
     x, y = np.log(known["a_eff"].to_numpy(float)), np.log(known["omega_disr"].to_numpy(float))
-    if len(x) < 3 or np.ptp(x) < 1e-6:
-        return np.nan, np.nan
-    (slope, _), covariance = np.polyfit(x, y, 1, cov=True)
-    return float(slope), float(np.sqrt(covariance[0, 0]))
+    slope, influence = slope_of(x, y, weights=equal_weights(cell_of(known)))
+    return slope, slope_error(influence)
 
 
 def _order(table, column):
@@ -304,8 +310,9 @@ def _order(table, column):
     common = counts.index[counts == table["type"].nunique()]
     if not len(common) or table["type"].nunique() < 2:
         return NOTHING
-    medians = table[table["nm"].isin(common)].groupby("type")[column].median().dropna().sort_values()
-    return " < ".join(medians.index)
+    known = table[table["nm"].isin(common) & table[column].notna()]
+    medians = {kind: quantiles(part[column], 0.5, equal_weights(cell_of(part))) for kind, part in known.groupby("type")}
+    return " < ".join(sorted(medians, key=medians.get))
 
 
 def formula_section(data):
@@ -331,7 +338,7 @@ def formula_section(data):
         parts.append(markdown_table(["formula as printed", "omega_disr", "omega at 25 % mass loss", "runs"], rows))
     rows = []
     for kind, part in data.grown.groupby("type", sort=False):
-        mean = [mean_and_error(part["porosity"]), mean_and_error(printed_porosity(part["porosity"]))]
+        mean = [mean_of(part["porosity"]), mean_of(printed_porosity(part["porosity"]))]
         rows.append([kind, *(with_error(*own) for own in mean), str(len(part))])
     parts.append(
         "Eq. 3 as printed, 5/(4 pi) in place of 15/(8 pi), makes all three axes shorter by a factor sqrt(2/3) and "

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ratd.beyond import binomial_interval, oblate_counts, slopes
-from ratd.ensemble import cell_statistics
+from ratd.ensemble import cell_of, cell_statistics
 from ratd.figures.figure8 import predictions
 from ratd.figures.figure10 import relative_error
 from ratd.marks import disruption
@@ -21,7 +21,6 @@ from ratd.reproduction.text import (
     beyond,
     drive_rows,
     interval,
-    mean_and_error,
     near,
     number,
     over,
@@ -29,7 +28,7 @@ from ratd.reproduction.text import (
     with_error,
 )
 from ratd.schema import END_REASONS
-from ratd.statistics import median_of
+from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
 LEVEL = (
@@ -53,9 +52,9 @@ def _terminal(data):
     return drive_rows("terminal", data.tables, evaluate)
 
 
-def _median(values, printed, factor=NEAR, holds=None):
+def _median(values, printed, factor=NEAR, holds=None, cell=None):
     """Answer with the median of some values and its bootstrap error; `holds` of (median, error) decides if given."""
-    found = median_of(values)
+    found = median_of(values, cell=cell)
     if not found["n"]:
         return None
     value, error = found["median"], found["error"]
@@ -108,10 +107,14 @@ def _course(data):
         drive_rows(
             "gain",
             {drive: table[table["type"] == "BAM2"] for drive, table in data.tables.items()},
-            lambda t, p: _median(t["n_contacts_max"] / t["n_contacts"], p, holds=lambda v, e: bool(v > 1)),
+            lambda t, p: _median(
+                t["n_contacts_max"] / t["n_contacts"], p, holds=lambda v, e: bool(v > 1), cell=cell_of(t)
+            ),
             "The median of all BAM2 grains; monomers of a grain that breaks at its weakest cut hardly move before.",
         ),
-        drive_rows("quarter", data.tables, lambda t, p: _median(t["omega_mass_75"] / t["omega_disr"], p)),
+        drive_rows(
+            "quarter", data.tables, lambda t, p: _median(t["omega_mass_75"] / t["omega_disr"], p, cell=cell_of(t))
+        ),
         *(drive_rows(key, course, whole(part)) for key, part in (("whole_01", 0.1), ("whole_08", 0.8))),
         drive_rows("whole_10", course, whole(1.0), "Slow spin-up breaks a grain at its weakest cut."),
         drive_rows(
@@ -145,7 +148,8 @@ def _mass_at(run, omega):
 def _blocks(part, printed):
     if not len(part):
         return None
-    share = part.loc[part["fragment_n_monomers"] == 1, "mass_fraction"].sum() / part["mass_fraction"].sum()
+    mass = part["weight"] * part["mass_fraction"]
+    share = mass[part["fragment_n_monomers"] == 1].sum() / mass.sum()
     return Answer(number(share), over(share, printed.value), near(share, printed.value))
 
 
@@ -196,7 +200,7 @@ def _shapes(data):
     def loosened(types, increase):
         def evaluate(table, printed):
             here = table[table["type"].isin(types)]
-            change = mean_and_error(here["porosity_disr"] - here["porosity_start"])
+            change = mean_of(here["porosity_disr"] - here["porosity_start"], cell_of(here))
             if not np.isfinite(change[0]):
                 return None
             found = beyond(*change, 0.0)

@@ -109,8 +109,8 @@ def fragments(tables):
                 empty(axes, "no fragments")
             for kind, look in style.items():
                 part = chosen[chosen["type"] == kind].sort_values("mass_fraction")
-                x = part["mass_fraction"].to_numpy()
-                for weight, line in ((x, "-"), (np.ones_like(x), "--")):
+                x, of_grain = part["mass_fraction"].to_numpy(), part["weight"].to_numpy()
+                for weight, line in ((x * of_grain, "-"), (of_grain, "--")):
                     share = np.cumsum(weight) / weight.sum() if len(x) else x
                     axes.step(x, share, where="post", color=look["color"], ls=line, lw=1.0)
             axes.set_xscale("log")

@@ -14,14 +14,13 @@ from ratd.reproduction.text import (
     Row,
     answer,
     between,
-    mean_and_error,
     near,
     number,
     over,
     range_answer,
     with_error,
 )
-from ratd.statistics import median_of
+from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
 POROSITY_REASON = (
@@ -35,7 +34,7 @@ def rows(data):
     result = [_coverage(data), *_step(data)]
     table = data.grown
     cells = cell_statistics(table, by=("type", "a_eff"))
-    mean = mean_and_error(table["mean_monomer_radius"] / NM)
+    mean = mean_of(table["mean_monomer_radius"] / NM)
     printed = PRINTED["mean_radius"]
     result.append(
         Row(
@@ -107,7 +106,7 @@ def _porosity_change(table):
         start = min(set(sizes), key=lambda size: abs(size - SPLIT))
         if start == largest:
             start = sizes.min()
-        first, last = (mean_and_error(own.loc[sizes == size, "porosity"]) for size in (start, largest))
+        first, last = (mean_of(own.loc[sizes == size, "porosity"]) for size in (start, largest))
         change = with_error(last[0] - first[0], np.hypot(first[1], last[1]))
         parts.append(f"{kind} {change} ({start / NM:g} to {largest / NM:g} nm)")
     return "; ".join(parts)

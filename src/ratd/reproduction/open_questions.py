@@ -26,7 +26,9 @@ def predictor_section(data):
     """Out-of-sample scatter of Eq. 33 and of the cut bound."""
     parts = [
         "Scatter of ln omega_disr of grains that the prediction was not fitted to (root mean square; 0.1 is about "
-        "10 %), with its bootstrap error. " + "; ".join(f"{name}: {text}" for name, text in PREDICTORS.items()) + "."
+        "10 %), with its bootstrap error; all cells count alike. "
+        + "; ".join(f"{name}: {text}" for name, text in PREDICTORS.items())
+        + "."
     ]
     for drive, table in data.tables.items():
         rows = []
@@ -53,6 +55,8 @@ def flattening_section(data):
             error = row["change_error"]
             if not np.isfinite(row["change"]):
                 verdict = "sizes on one side only"
+            elif not np.isfinite(error):
+                verdict = "too few grains for an error"
             elif row["change"] > 2 * error:
                 verdict = "flatter above"
             elif row["change"] < -2 * error:
@@ -66,9 +70,9 @@ def flattening_section(data):
     return "\n\n".join(
         [
             "Local slope d ln omega/d ln a_eff (300 nm counts on both sides; materials together, each with a level of "
-            "its own; ± from a bootstrap of grains within each material and size), of omega_disr, and of the bound "
-            "from cuts through the contacts, near which omega_disr lies in the consistent model and which is known "
-            "without any spin-up. A tensile strength that depends on nothing but material gives -1; an asymptotic "
+            "its own; ± from what each grain adds to the slope, the error HC3), of omega_disr, and of the bound from "
+            "cuts through the contacts, near which omega_disr lies in the consistent model and which is known without "
+            "any spin-up. A tensile strength that depends on nothing but material gives -1; an asymptotic "
             "limit, as the paper finds above 300 nm, gives 0.",
             markdown_table(head, rows),
         ]

@@ -88,8 +88,9 @@ def _coverage(data):
         f"{len(data.grown)} grains were grown, and {total} spin-ups made. The paper has 2970 grains: 3 materials, 3 "
         "types, 11 sizes from 50 to 550 nm, 30 seeds, that is 90 grains of each type and size. What is said of grains "
         "at rest, and of what their contacts can hold, is said of all that were grown. The table counts the spin-ups. "
-        "Cells that are missing here are missing in every mean, range and fit of omega_disr, and for the large "
-        "grains, which differ most, that matters."
+        "Where something is said of several cells (a material, type and size each), all of them have the same weight, "
+        "as in the paper, where each has 30 grains: means, medians and fits do not depend on how many grains of each "
+        "could be computed, but their errors do. Cells that are missing here are missing in all of that."
     )
     return f"{text}\n\n{markdown_table(['drive', 'type', *(f'{s / 1e3:g} nm' for s in sizes), 'all'], rows)}"
 
@@ -136,9 +137,9 @@ def _caption(text):
 def _table3(data):
     """A and alpha beside print, a table a drive and reading of <a_mon>."""
     parts = [
-        "Least squares over single grains; in brackets the bootstrap interval. <a_mon> is read as the printed 20 nm "
-        "and as the mean radius of each grain's own monomers: the choice moves A, and hardly alpha. Ratio: ours over "
-        "printed."
+        "Least squares over single grains, all sizes with the same weight; in brackets the bootstrap interval. <a_mon> "
+        "is read as the printed 20 nm and as the mean radius of each grain's own monomers: the choice moves A, and "
+        "hardly alpha. Ratio: ours over printed."
     ]
     for drive, fit in data.fits.items():
         for reading in fit["mean_radius"].values:

@@ -4,6 +4,7 @@ import numpy as np
 
 from ratd.beyond import cross_validation, slopes
 from ratd.composition import table1, table2
+from ratd.ensemble import cell_of
 from ratd.figures.style import plural
 from ratd.reproduction import grown
 from ratd.reproduction.argument import calibrated_grains, printed_rate
@@ -60,11 +61,12 @@ def _rate(data, drive):
 
 def _level(name, table):
     """omega_disr over Eq. 33 with the printed Table 3."""
-    found = median_of(1 / table["printed_over_found"])
-    by_type = [
-        f"{kind} {number(median_of(1 / part['printed_over_found'])['median'])}"
-        for kind, part in table.groupby("type", sort=False)
-    ]
+
+    def over(part):
+        return median_of(1 / part["printed_over_found"], cell=cell_of(part))
+
+    found = over(table)
+    by_type = [f"{kind} {number(over(part)['median'])}" for kind, part in table.groupby("type", sort=False)]
     return (
         f"**{name}**: {with_error(found['median'], found['error'])} times Eq. 33 with the printed "
         f"Table 3, in the median of {plural(found['n'], 'grain')} ({', '.join(by_type)}); middle two thirds "

@@ -49,15 +49,6 @@ def interval(value, low, high):
     return f"{number(value)} ({between(low, high)})" if np.isfinite(low) else number(value)
 
 
-def mean_and_error(values):
-    """Mean and standard error of the finite values; NaN for fewer than two."""
-    values = np.asarray(values, dtype=float)
-    values = values[np.isfinite(values)]
-    if len(values) < 2:
-        return (float(values[0]) if len(values) else np.nan), np.nan
-    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
-
-
 @dataclass(frozen=True)
 class Answer:
     """Our value of a printed one.
