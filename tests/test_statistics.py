@@ -102,3 +102,19 @@ def test_error_of_a_slope_is_the_scatter_between_ensembles(counts):
         found.append((slope, slope_error(influence)))
     scatter, error = np.std([s for s, _ in found]), np.sqrt(np.mean([e**2 for _, e in found]))
     assert 0.9 < error / scatter < 1.5  # HC3 errs to the safe side with few points
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_the_error_of_the_median_is_that_of_the_medians_of_drawn_samples(weighted):
+    """The slow way: each sample written out, group by group."""
+    rng = np.random.default_rng(7)
+    values, group, cell = rng.lognormal(size=40), rng.integers(15, size=40), np.repeat([0, 1, 2], [30, 8, 2])
+    weights = equal_weights(cell) if weighted else np.ones(40)
+    found = median_of(values, group, seed=3, cell=cell if weighted else None)
+    names = list(dict.fromkeys(group))
+    draws = np.random.Generator(np.random.PCG64(3)).integers(len(names), size=(2000, len(names)))
+    medians = []
+    for draw in draws:
+        chosen = np.concatenate([np.flatnonzero(group == names[k]) for k in draw])
+        medians.append(quantiles(values[chosen], 0.5, weights[chosen]))
+    assert found["error"] == pytest.approx(np.std(medians, ddof=1), rel=1e-9)

@@ -1,6 +1,7 @@
 """Medians, means and slopes with their uncertainty, of values of which some cells may have more than others."""
 
 import numpy as np
+import pandas as pd
 
 __all__ = ["equal_weights", "mean_of", "median_of", "quantiles", "slope_error", "slope_of"]
 
@@ -41,16 +42,22 @@ def quantiles(values, probabilities, weights=None):
         (Harrell's wtd.quantile, type "quantile"): the weights need not be whole.
     """
     values = np.asarray(values, dtype=float)
-    n = len(values)
     order = np.argsort(values, kind="stable")
-    weights = np.ones(n) if weights is None else np.asarray(weights, dtype=float)[order]
-    last = np.cumsum(weights) * (n / np.sum(weights))  # the last place in the sample that each value takes
-    place = 1.0 + (n - 1) * np.asarray(probabilities, dtype=float)
-    low = np.floor(place)
-    low, high = (
-        values[order][np.minimum(np.searchsorted(last, whole - 1e-9 * n), n - 1)] for whole in (low, low + 1.0)
-    )
-    return low + (place - np.floor(place)) * (high - low)
+    weights = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)[order]
+    return _of_sorted(values[order], weights, len(values), np.asarray(probabilities, dtype=float))
+
+
+def _of_sorted(values, weights, n, probabilities):
+    """Quantiles (rows, k) of ascending values with weights (rows, values), each row a sample of n (rows,)."""
+    n = np.asarray(n, dtype=float)[..., None]
+    last = np.cumsum(weights, axis=-1)  # the last place in the sample that each value takes, times something
+    last *= n / last[..., -1:]
+    place = 1.0 + (n - 1.0) * probabilities
+    whole = np.floor(place)
+    # so far below each place that rounding does not tell
+    edge = np.stack([whole, np.minimum(whole + 1.0, n)], axis=-1) - 1e-9 * n[..., None]
+    low, high = np.moveaxis(values[np.sum(last[..., None, None, :] < edge[..., None], axis=-1)], -1, 0)
+    return low + (place - whole) * (high - low)
 
 
 def median_of(values, group=None, seed=0, cell=None):
@@ -81,13 +88,17 @@ def median_of(values, group=None, seed=0, cell=None):
     if not len(values):
         return dict(median=np.nan, error=np.nan, low=np.nan, high=np.nan, n=0)
     low, median, high = quantiles(values, [0.16, 0.5, 0.84], weights)
-    members = [np.flatnonzero(group == name) for name in dict.fromkeys(group.tolist())]
+    member = pd.factorize(group)[0]
+    n_groups = member.max() + 1
     error = np.nan
-    if len(members) > 1:
+    if n_groups > 1:
         rng = np.random.Generator(np.random.PCG64(seed))
-        draws = rng.integers(len(members), size=(N_BOOTSTRAP, len(members)))
-        drawn = (np.concatenate([members[k] for k in draw]) for draw in draws)
-        error = float(np.std([quantiles(values[own], 0.5, weights[own]) for own in drawn], ddof=1))
+        draws = rng.integers(n_groups, size=(N_BOOTSTRAP, n_groups))
+        often = np.array([np.bincount(draw, minlength=n_groups) for draw in draws])[:, member]
+        order = np.argsort(values, kind="stable")
+        drawn = (often * weights)[:, order]
+        medians = _of_sorted(values[order], drawn, often.sum(axis=1), np.array([0.5]))
+        error = float(np.std(medians, ddof=1))
     return dict(median=float(median), error=error, low=float(low), high=float(high), n=len(values))
 
 
