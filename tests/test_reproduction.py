@@ -196,6 +196,28 @@ def test_studies_are_told_from_their_columns(folder):
     assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times that with f = 0.02" in text
 
 
+def test_grains_of_fig_9_are_set_beside_themselves_with_the_step_of_the_ensemble(folder):
+    data = Data(str(folder))
+    own = ensemble("literal").query("material == 'a-C' and type == 'BAM2'").assign(parameter="none")
+    own["omega_disr"] *= 0.8
+    own["omega_mass_75"] /= np.linspace(0.99, 1.01, len(own))
+    other = own.assign(parameter="T_vis", omega_disr=1.0, omega_mass_75=1.0)
+    ratios_of_fig_9 = {"viscous_time": 5e-12, "critical_rolling_displacement": 2e-10, "omega_disr_ratio": np.nan}
+    data.__dict__["parameters"] = {"literal": pd.concat([own, other]).assign(**ratios_of_fig_9)}
+    text = report(data, "reproduction")
+    if "literal" not in data.tables:
+        assert "both the ensemble and Fig. 9" not in text
+        return
+    words = (
+        f"the {len(own)} grains that both the ensemble and Fig. 9 have: with f = 0.125 a quarter of the mass is lost"
+    )
+    assert words in text and "the stress is greatest at 1.25 times (1.25–1.25" in text
+    line = next(line for line in text.splitlines() if "both the ensemble and Fig. 9" in line)
+    assert " is lost at 1.000" in line and line.endswith("the omega with f = 0.05.")
+    data.plan.config["figures"]["figure9"]["literal"]["angular_acceleration"] *= 2
+    assert "both the ensemble and Fig. 9" not in report(data, "reproduction")
+
+
 def test_what_a_drive_was_fixed_on_decides_nothing(folder):
     data = Data(str(folder))
     values = {"omega_onset": 3e8, "calibrated": 2e13, "exponent": 0.3, "exponent_error": 0.01}

@@ -8,6 +8,8 @@ from ratd.ensemble import cell_of
 from ratd.figures.style import plural
 from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table
+from ratd.parameters import MARKS
+from ratd.parameters import OWN as AS_IT_IS
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.solid import solid_omega
@@ -155,7 +157,7 @@ def calibration_section(data):
                 f"{with_error(own['median'], own['error'])} times that with f = {shorter} "
                 f"({between(pairs['ratio'].min(), pairs['ratio'].max())})."
             )
-    parts += solid_parts(data)
+    parts += [*_shorter_step(data), *solid_parts(data)]
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
@@ -176,6 +178,32 @@ def calibration_section(data):
             rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
         parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
     return "\n\n".join(parts)
+
+
+def _shorter_step(data):
+    """Grains of Fig. 9 beside themselves in the ensemble, which the literal drive spun up with a longer step."""
+    if "literal" not in data.tables or "literal" not in data.parameters:
+        return []
+    law, other = data.plan.spin_up_of("literal"), data.plan.config["figures"]["figure9"]["literal"]
+    ratio = [own["angular_acceleration"] / own["timestep_factor"] for own in (law, other)]
+    if law["angular_acceleration"] is None or not np.isclose(*ratio, rtol=1e-6):
+        return []
+    key = ["material", "type", "seed", "nm"]
+    short = data.parameters["literal"]
+    short = short[short["parameter"] == AS_IT_IS].assign(nm=_whole_nm)
+    both = data.tables["literal"].assign(nm=_whole_nm).merge(short, on=key, suffixes=("_long", "_short"))
+    found = {mark: median_of(both[f"{mark}_long"] / both[f"{mark}_short"]) for mark in MARKS}
+    if not all(own["n"] for own in found.values()):
+        return []
+    words = [
+        f"{name} at {with_error(found[mark]['median'], found[mark]['error'])} times "
+        f"({between(found[mark]['low'], found[mark]['high'])} for the middle two thirds)"
+        for mark, name in (("omega_mass_75", "a quarter of the mass is lost"), ("omega_disr", "the stress is greatest"))
+    ]
+    return [
+        f"The same can be seen in the {plural(len(both), 'grain')} that both the ensemble and Fig. 9 have: with f = "
+        f"{law['timestep_factor']:g} {' and '.join(words)} the omega with f = {other['timestep_factor']:g}."
+    ]
 
 
 def printed_rate(data):
