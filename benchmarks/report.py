@@ -120,7 +120,8 @@ def goals(out):
         name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
         found.append((name, "s", largest["growth_seconds"].max(), 0.5, True))
     for row in [] if paper is None else paper.itertuples():
-        found.append((f"{row.grains} grains, drive {row.drive}", "core-hours", row.core_hours, 48.0, True))
+        law = f"drive {row.drive}, {row.pace}, f = {row.timestep_factor:g}"
+        found.append((f"{row.grains} grains, {law}", "core-hours", row.core_hours, 48.0, True))
     if overhead is not None:
         share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
         largest = overhead["size_nm"].max()
