@@ -298,8 +298,21 @@ def _parameters(data):
 
     return [
         drive_rows("rolling", data.parameters, last("critical_rolling_displacement", ("BA", "BAM2"), unchanged)),
-        drive_rows("viscous", data.parameters, last("viscous_time", ("BAM2",), raised)),
+        drive_rows("viscous", data.parameters, last("viscous_time", ("BAM2",), raised), _weakened(data)),
     ]
+
+
+def _weakened(data):
+    """Words on the step of Fig. 9, which weakens what T_vis stands for."""
+    own = data.plan.config["figures"]["figure9"]
+    if own is None:
+        return ""
+    step = {"prescribed": own["timestep_factor"], "literal": own["literal"]["timestep_factor"]}
+    steps = ", ".join(f"{step[drive]:g} ({drive})" for drive in data.parameters)
+    return (
+        "The scheme weakens the damping of the lightest monomers, less so the shorter the step (docs/model.md, The "
+        f"scheme): f = {steps}. The paper does not say how it takes the damping, which its Eq. 29 lacks."
+    )
 
 
 def _pairs(data):
