@@ -216,6 +216,8 @@ def test_grains_of_fig_9_are_set_beside_themselves_with_the_step_of_the_ensemble
     assert " is lost at 1.000" in line and line.endswith("the omega with f = 0.05.")
     data.plan.config["figures"]["figure9"]["literal"]["angular_acceleration"] *= 2
     assert "both the ensemble and Fig. 9" not in report(data, "reproduction")
+    data.plan.config["literal"] |= {"epsilon": 0.02, "angular_acceleration": None}
+    assert "both the ensemble and Fig. 9" not in report(data, "reproduction")
 
 
 def test_what_a_drive_was_fixed_on_decides_nothing(folder):

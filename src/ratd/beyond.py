@@ -79,9 +79,9 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
     rows = []
     for kind in [*dict.fromkeys(table["type"]), "all"]:
         chosen = known if kind == "all" else known & (table["type"] == kind)
+        weights = equal_weights(cell_of(table[chosen]))
         for name in PREDICTORS:
             values = residual.loc[chosen, name].to_numpy()
-            weights = equal_weights(cell_of(table[chosen]))
             rows.append({"type": kind, "predictor": name, **_scatter(values, weights, rng), "n_grains": len(values)})
     return pd.DataFrame(rows)
 

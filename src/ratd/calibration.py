@@ -15,7 +15,15 @@ import xarray as xr
 from ratd.errors import InputError
 from ratd.marks import disruption
 
-__all__ = ["CALIBRATION_COLUMNS", "FIT_VALUES", "MARKS", "calibrate", "calibration_table", "step_ratios"]
+__all__ = [
+    "CALIBRATION_COLUMNS",
+    "FIT_VALUES",
+    "MARKS",
+    "calibrate",
+    "calibration_table",
+    "printed_acceleration",
+    "step_ratios",
+]
 
 MARKS = {
     "omega_first_loss": "first loss of mass",
@@ -60,6 +68,11 @@ FIT_VALUES = {
 """Units and meaning of what `calibrate` gives."""
 
 
+def printed_acceleration(angular_acceleration, timestep_factor):
+    """d omega/dt [rad/s2] at the printed step factor that a run with another one stands for: the same over the step."""
+    return angular_acceleration * PRINTED_STEP / timestep_factor
+
+
 def calibration_table(runs):
     """Where the mass of each run starts to fall.
 
@@ -80,7 +93,7 @@ def calibration_table(runs):
         row = {name: run.attrs[name] for name in CALIBRATION_COLUMNS if name in run.attrs}
         row |= {name: float(marks[name]) for name in CALIBRATION_COLUMNS if name in marks}
         gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
-        row["printed_acceleration"] = row["angular_acceleration"] * PRINTED_STEP / row["timestep_factor"]
+        row["printed_acceleration"] = printed_acceleration(row["angular_acceleration"], row["timestep_factor"])
         row["omega_mass_99"] = float(run["omega"].values[gone.argmax()]) if gone.any() else np.nan
         rows.append(row)
     table = pd.DataFrame(rows, columns=list(CALIBRATION_COLUMNS))

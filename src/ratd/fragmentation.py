@@ -120,10 +120,10 @@ def fragment_table(dataset):
         grain, with which all cells (material, type, size) count alike.
     """
     size = dataset["row_size_fragment"].values
-    table = pd.DataFrame({name: np.repeat(dataset[name].values, size) for name in COLUMNS})
-    table["grain"] = np.repeat(np.arange(len(size)), size)
     grains = pd.DataFrame({name: dataset[name].values for name in COLUMNS})
-    table["weight"] = np.repeat(equal_weights(cell_of(grains)), size)
+    grains["grain"] = np.arange(len(grains))
+    grains["weight"] = equal_weights(cell_of(grains))
+    table = grains.loc[grains.index.repeat(size)].reset_index(drop=True)
     for name in FRAGMENT_COLUMNS:
         table[name] = dataset[name].values
     table["mass_fraction"] = table["fragment_mass"] / table["grain_mass"]

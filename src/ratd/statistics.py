@@ -84,20 +84,19 @@ def median_of(values, group=None, seed=0, cell=None):
     group = np.arange(len(values)) if group is None else np.asarray(group)
     there = np.isfinite(values)
     weights = np.ones(there.sum()) if cell is None else equal_weights(np.asarray(cell)[there])
-    values, group = values[there], group[there]
+    values, member = values[there], pd.factorize(group[there])[0]
     if not len(values):
         return dict(median=np.nan, error=np.nan, low=np.nan, high=np.nan, n=0)
-    low, median, high = quantiles(values, [0.16, 0.5, 0.84], weights)
-    member = pd.factorize(group)[0]
+    order = np.argsort(values, kind="stable")
+    values, weights, member = values[order], weights[order], member[order]
+    low, median, high = _of_sorted(values, weights, len(values), np.array([0.16, 0.5, 0.84]))
     n_groups = member.max() + 1
     error = np.nan
     if n_groups > 1:
         rng = np.random.Generator(np.random.PCG64(seed))
         draws = rng.integers(n_groups, size=(N_BOOTSTRAP, n_groups))
         often = np.array([np.bincount(draw, minlength=n_groups) for draw in draws])[:, member]
-        order = np.argsort(values, kind="stable")
-        drawn = (often * weights)[:, order]
-        medians = _of_sorted(values[order], drawn, often.sum(axis=1), np.array([0.5]))
+        medians = _of_sorted(values, often * weights, often.sum(axis=1), np.array([0.5]))
         error = float(np.std(medians, ddof=1))
     return dict(median=float(median), error=error, low=float(low), high=float(high), n=len(values))
 

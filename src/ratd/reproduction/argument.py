@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.beyond import SPLIT
-from ratd.calibration import PRINTED_STEP, step_ratios
+from ratd.calibration import PRINTED_STEP, printed_acceleration, step_ratios
 from ratd.ensemble import cell_of
 from ratd.figures.style import plural
 from ratd.formula_table import FORMULAE, OWN
@@ -184,14 +184,14 @@ def _shorter_step(data):
     """Grains of Fig. 9 beside themselves in the ensemble, which the literal drive spun up with a longer step."""
     if "literal" not in data.tables or "literal" not in data.parameters:
         return []
-    law, other = data.plan.spin_up_of("literal"), data.plan.config["figures"]["figure9"]["literal"]
-    ratio = [own["angular_acceleration"] / own["timestep_factor"] for own in (law, other)]
-    if law["angular_acceleration"] is None or not np.isclose(*ratio, rtol=1e-6):
+    law, figure9, rate = data.plan.spin_up_of("literal"), data.plan.config["figures"]["figure9"], printed_rate(data)
+    if figure9 is None or rate is None:
         return []
-    key = ["material", "type", "seed", "nm"]
+    other = figure9["literal"]
+    if not np.isclose(rate, printed_acceleration(**other), rtol=1e-6, atol=0):
+        return []
     short = data.parameters["literal"]
-    short = short[short["parameter"] == AS_IT_IS].assign(nm=_whole_nm)
-    both = data.tables["literal"].assign(nm=_whole_nm).merge(short, on=key, suffixes=("_long", "_short"))
+    both = _same_grains(data.tables["literal"], short[short["parameter"] == AS_IT_IS], ("_long", "_short"))
     found = {mark: median_of(both[f"{mark}_long"] / both[f"{mark}_short"]) for mark in MARKS}
     if not all(own["n"] for own in found.values()):
         return []
@@ -206,11 +206,17 @@ def _shorter_step(data):
     ]
 
 
+def _same_grains(table, other, suffixes):
+    """Grains that two tables have, with the columns of both; those of one name get a suffix each."""
+    key = ["material", "type", "seed", "nm"]
+    return table.assign(nm=_whole_nm).merge(other.assign(nm=_whole_nm), on=key, suffixes=suffixes)
+
+
 def printed_rate(data):
     """d omega/dt [rad/s2] at the printed step that the runs of the drive `literal` stand for; None without one."""
     law = data.plan.spin_up_of("literal")
     rate = law["angular_acceleration"]
-    return None if rate is None else rate * PRINTED_STEP / law["timestep_factor"]
+    return None if rate is None else printed_acceleration(rate, law["timestep_factor"])
 
 
 def is_calibrated(data):
@@ -235,13 +241,8 @@ def solid_parts(data):
     ]
     rate = law["angular_acceleration"]
     if "literal" in data.tables and rate is not None:
-        key = ["material", "type", "seed", "nm"]
-        literal_runs = data.tables["literal"].assign(nm=_whole_nm)[[*key, "omega_disr"]]
-        both = (
-            with_literal_step(data, law["timestep_factor"])
-            .assign(nm=_whole_nm)
-            .merge(literal_runs, on=key, suffixes=("", "_literal"))
-        )
+        consistent = with_literal_step(data, law["timestep_factor"])
+        both = _same_grains(consistent, data.tables["literal"], ("", "_literal"))
         ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
         parts[0] += (
             f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "

@@ -5,6 +5,7 @@ from scipy.stats import kstest
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, empty, logarithmic, new_figure, styled
 from ratd.markdown import markdown_table, measured
+from ratd.statistics import mean_of
 from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY
 
 LIMIT = 1.36
@@ -29,14 +30,6 @@ def uniform_values(table):
     return {name: np.sort(column.to_numpy(float)) for name, column in values.items()}
 
 
-def mean(values):
-    """Mean and its standard error."""
-    values = np.asarray(values, dtype=float)
-    values = values[np.isfinite(values)]
-    error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
-    return (values.mean() if len(values) else np.nan), error
-
-
 @styled
 def draw(table):
     """Porosity against the number of monomers, and cumulative distributions of arrivals less the uniform one.
@@ -55,7 +48,7 @@ def draw(table):
     for kind, part in table[table["study"] == "aggregates"].groupby("type"):
         colour = TYPE_COLOUR.get(kind, "black")
         numbers = sorted(set(part["n_monomers"]))
-        points = [mean(part["porosity"][part["n_monomers"] == n]) for n in numbers]
+        points = [mean_of(part["porosity"][part["n_monomers"] == n]) for n in numbers]
         axes.errorbar(
             numbers, [p[0] for p in points], [p[1] for p in points],
             color=colour, marker=TYPE_MARKER.get(kind, "o"), ls="none", label=kind, elinewidth=0.8,
@@ -92,8 +85,7 @@ def _tell_arrivals(values):
     rows = []
     for name, own in values.items():
         found = kstest(own, "uniform")
-        error = np.std(own, ddof=1) / np.sqrt(len(own))
-        rows.append([name, f"{len(own)}", measured(own.mean(), error), f"{found.statistic:.4f}", f"{found.pvalue:.2g}"])
+        rows.append([name, f"{len(own)}", measured(*mean_of(own)), f"{found.statistic:.4f}", f"{found.pvalue:.2g}"])
     return "\n\n".join(
         [
             "Single arrivals of a monomer on another: squared impact parameter over the greatest that hits, directions "
@@ -111,15 +103,15 @@ def tell(table):
     rows, values = [], uniform_values(table)
     for (kind, n), part in table[table["study"] == "aggregates"].groupby(["type", "n_monomers"]):
         p, q = EXPECTED_CONTACTS[kind]
-        value, error = mean(part["porosity"])
+        value, error = mean_of(part["porosity"])
         expected = EXPECTED_POROSITY.get((kind, int(n)), np.nan)
         off = (value - expected) / np.hypot(error, 0.01)
-        square = [measured(*mean(part[f"square_{axis}"])) for axis in "xyz"]
+        square = [measured(*mean_of(part[f"square_{axis}"])) for axis in "xyz"]
         rows.append(
             [kind, f"{n:.0f}", len(part), measured(value, error), f"{expected:g} ± 0.01", f"{off:+.1f}",
-             measured(*mean(part["n_contacts"])), f"{p * n - q:.0f}",
-             measured(*mean(part["enclosing_radius"] / part["a_eff"])),
-             measured(*mean(part["fractal_dimension"])), ", ".join(square)]
+             measured(*mean_of(part["n_contacts"])), f"{p * n - q:.0f}",
+             measured(*mean_of(part["enclosing_radius"] / part["a_eff"])),
+             measured(*mean_of(part["fractal_dimension"])), ", ".join(square)]
         )  # fmt: skip
     header = [
         "type", "N", "aggregates", "porosity", "independent", "off [sigma]", "N_con", "without accidental ones",
