@@ -115,6 +115,14 @@ def test_one_side_without_sizes_has_no_slope():
     assert np.isfinite(row["below"]) and np.isnan(row["above"]) and np.isnan(row["change_error"])
 
 
+def test_a_side_without_an_error_leaves_the_change_without_one():
+    below = make_table(materials=["q-S"], types=["BA"], sizes=SIZES[1:6], seeds=5)
+    above = make_table(materials=["q-S"], types=["BA"], sizes=SIZES[6:7], seeds=1)  # a line through both grains
+    found = slopes(pd.concat([below[(below["a_eff"] < 290e-9) | (below["seed"] == 0)], above])).iloc[0]
+    assert np.isfinite([found["below_error"], found["change"]]).all()
+    assert np.isnan(found["above_error"]) and np.isnan(found["change_error"])
+
+
 def test_binomial_intervals_of_wilson():
     assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
     assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ratd.statistics import equal_weights, mean_of, median_of, quantiles, slope_error, slope_of
+from ratd.statistics import equal_weights, jackknife_error, mean_of, median_of, quantiles, slope_error, slope_of
 
 
 def test_cells_have_equal_weights():
@@ -37,7 +37,7 @@ def test_statistics_do_not_hang_on_how_many_values_a_cell_has():
     values = np.concatenate([rng.normal(1, 0.1, 2000), rng.normal(3, 0.1, 100)])
     cell = np.repeat([0, 1], [2000, 100])
     mean, error = mean_of(values, cell)
-    assert abs(mean - 2) < 0.02 and 0.01 < error < 0.2
+    assert abs(mean - 2) < 0.02 and error == pytest.approx(0.5 * np.hypot(0.1 / 2000**0.5, 0.1 / 10), rel=0.2)
     found = median_of(values, cell=cell)
     assert found["low"] < 1.1 and found["high"] > 2.9 and found["n"] == 2100
     assert median_of(values)["high"] < 1.2
@@ -54,11 +54,23 @@ def test_error_of_the_mean_is_that_of_the_textbook():
     values = np.random.default_rng(3).normal(size=50)
     mean, error = mean_of(values)
     assert mean == pytest.approx(values.mean()) and error == pytest.approx(values.std(ddof=1) / np.sqrt(50))
-    # as far as the means of many weighted samples scatter
-    cell = np.repeat([0, 1, 2], [30, 5, 15])
-    made = np.random.default_rng(4).normal(size=(4000, 50))
+
+
+@pytest.mark.parametrize("counts", [[30, 5, 15], [8, 4, 1, 1]])
+def test_error_of_the_mean_is_the_scatter_between_ensembles_of_the_same_cells(counts):
+    """However much the cells differ, and where some have a single value."""
+    cell = np.repeat(np.arange(len(counts)), counts)
+    made = 100.0 * cell + np.random.default_rng(4).normal(size=(4000, len(cell)))
     found = np.array([mean_of(row, cell) for row in made])
     assert np.sqrt(np.mean(found[:, 1] ** 2)) == pytest.approx(found[:, 0].std(), rel=0.1)
+    assert np.isnan(mean_of([1.0, 2.0, 3.0], [0, 1, 2])[1])
+
+
+def test_error_by_leaving_out_is_that_of_the_mean_for_a_mean():
+    values = np.random.default_rng(8).normal(size=9)
+    left_out = [np.delete(values, k).mean() for k in range(9)]
+    assert jackknife_error(left_out) == pytest.approx(mean_of(values)[1])
+    assert np.isnan(jackknife_error([1.0])) and np.isnan(jackknife_error([1.0, np.nan, 2.0]))
 
 
 def slope_by_matrix(x, y, group, weights):

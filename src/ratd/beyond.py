@@ -130,9 +130,9 @@ def slopes(table, mark="omega_disr", split=SPLIT):
     Returns
     -------
     pandas.DataFrame
-        A row a type: below, above, change (above - below) with `_error` (`ratd.statistics.slope_error`); sizes_below,
-        sizes_above, n_grains. Materials are taken together, each with a level of its own, and all cells of a side count
-        alike. NaN where a side has fewer than two sizes.
+        A row a type: below, above, change (above - below) with `_error` (`ratd.statistics.slope_error`, NaN where a
+        side has too few grains for one); sizes_below, sizes_above, n_grains. Materials are taken together, each with a
+        level of its own, and all cells of a side count alike. NaN where a side has fewer than two sizes.
     """
     table = table[table[mark].astype(float) > 0]
     rows = []
@@ -151,7 +151,10 @@ def slopes(table, mark="omega_disr", split=SPLIT):
             )
         row["change"] = row["above"] - row["below"]
         influence["change"] = influence["above"] - influence["below"]
-        rows.append(row | {f"{name}_error": slope_error(values) for name, values in influence.items()})
+        row |= {f"{name}_error": slope_error(values) for name, values in influence.items()}
+        if not np.isfinite([row["below_error"], row["above_error"]]).all():
+            row["change_error"] = np.nan  # that of one side alone is not that of the difference
+        rows.append(row)
     return pd.DataFrame(rows)
 
 

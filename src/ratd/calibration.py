@@ -14,6 +14,7 @@ import xarray as xr
 
 from ratd.errors import InputError
 from ratd.marks import disruption
+from ratd.statistics import jackknife_error, slope_of
 
 __all__ = [
     "CALIBRATION_COLUMNS",
@@ -59,7 +60,7 @@ CALIBRATION_COLUMNS = {
 FIT_VALUES = {
     "omega_onset": ("rad s-1", "onset of mass loss that the literal drive is to have"),
     "exponent": ("1", "exponent p of omega ~ (d omega/dt)^p, fitted with a prefactor for each grain"),
-    "exponent_error": ("1", "standard error of the exponent"),
+    "exponent_error": ("1", "standard error of the exponent, by leaving out one grain after the other"),
     "calibrated": ("rad s-2", "d omega/dt at which the mean onset is the wanted one, at the printed step factor"),
     "calibrated_low": ("rad s-2", "calibrated d omega/dt, one standard error lower"),
     "calibrated_high": ("rad s-2", "calibrated d omega/dt, one standard error higher"),
@@ -142,10 +143,10 @@ def calibrate(table, omega_onset, mark=ONSET):
     -------
     xarray.Dataset
         Scalars of `FIT_VALUES`. ln omega is fitted by least squares as a prefactor for each grain and one exponent for
-        all; the mean prefactor stands for the grains that the paper averages over. The errors are those of the
-        exponent and of the mean over the grains; the latter is 0 where there is one grain. All but ``omega_onset`` is
-        NaN where fewer than two accelerations have the mark, and so is every d omega/dt that lies more than a factor
-        `FARTHEST` outside those of the runs.
+        all; the mean prefactor stands for the grains that the paper averages over. Errors are found by leaving out one
+        grain after the other, so that several runs of a grain count as what they are; NaN for one grain. All but
+        ``omega_onset`` is NaN where no grain has the mark at two accelerations, and so is every d omega/dt that lies
+        more than a factor `FARTHEST` outside those of the runs.
 
     Raises
     ------
@@ -155,33 +156,36 @@ def calibrate(table, omega_onset, mark=ONSET):
     if not omega_onset > 0:
         raise InputError(f"calibrate: omega_onset is {omega_onset}, but must be above 0 rad/s")
     there = table[table[mark].notna()]
-    value = dict.fromkeys(FIT_VALUES, np.nan) | {"omega_onset": float(omega_onset)}
-    if there["printed_acceleration"].nunique() > 1:
-        x, y = np.log(there["printed_acceleration"]), np.log(there[mark])
-        grain = there["seed"]
-        inner_x, inner_y = x - x.groupby(grain).transform("mean"), y - y.groupby(grain).transform("mean")
-        spread = (inner_x**2).sum()
-        if spread > 0:
-            exponent = (inner_x * inner_y).sum() / spread
-            freedom = len(there) - grain.nunique() - 1
-            residual = inner_y - exponent * inner_x
-            error = np.sqrt((residual**2).sum() / freedom / spread) if freedom > 0 else np.nan
-            # each grain's own answer; their mean, and its error with that of the exponent, which all share
-            own = ((np.log(omega_onset) - (y - exponent * x).groupby(grain).mean()) / exponent).to_numpy()
-            lever = x.mean() - own.mean()
-            scatter = own.std(ddof=1) / np.sqrt(len(own)) if len(own) > 1 else 0.0
-            total = np.hypot(lever * error / exponent, scatter)
-            first = there.loc[there.groupby("seed")["printed_acceleration"].idxmin()]
-            law = np.log(first["printed_acceleration"]) + np.log(omega_onset / first[mark]) / LAW_EXPONENT
-            value |= {"exponent": exponent, "exponent_error": error, "calibrated": np.exp(own.mean())}
-            value |= {"calibrated_low": np.exp(own.mean() - total), "calibrated_high": np.exp(own.mean() + total)}
-            value["calibrated_by_law"] = np.exp(law.mean())
-            near = (np.exp(x.min()) / FARTHEST, np.exp(x.max()) * FARTHEST)
-            for name in ("calibrated", "calibrated_low", "calibrated_high", "calibrated_by_law"):
-                value[name] = value[name] if near[0] <= value[name] <= near[1] else np.nan
+    x, y = np.log(there["printed_acceleration"].to_numpy(float)), np.log(there[mark].to_numpy(float))
+    grain, own = pd.factorize(there["seed"])
+    exponent, answer = _inverted(x, y, grain, np.log(omega_onset))
+    others = [grain != k for k in range(len(own))]
+    left_out = np.array([_inverted(x[k], y[k], grain[k], np.log(omega_onset)) for k in others]).reshape(-1, 2)
+    exponent_error, error = (jackknife_error(values) for values in left_out.T)
+    least = there.loc[there.groupby("seed")["printed_acceleration"].idxmin()]
+    by_law = np.log(least["printed_acceleration"]) + np.log(omega_onset / least[mark]) / LAW_EXPONENT
+    answers = {
+        "calibrated": answer,
+        "calibrated_low": answer - error,
+        "calibrated_high": answer + error,
+        "calibrated_by_law": by_law.mean() if np.isfinite(exponent) else np.nan,
+    }
+    value = {"omega_onset": omega_onset, "exponent": exponent, "exponent_error": exponent_error}
+    for name, own in answers.items():
+        known = np.isfinite(own) and x.min() - np.log(FARTHEST) <= own <= x.max() + np.log(FARTHEST)
+        value[name] = np.exp(own) if known else np.nan
     return xr.Dataset(
         {
             name: ((), float(value[name]), {"units": units, "long_name": meaning})
             for name, (units, meaning) in FIT_VALUES.items()
         }
     )
+
+
+def _inverted(x, y, grain, wanted):
+    """Slope of y = prefactor of the grain + slope x, and the mean over the grains of the x at which y is `wanted`."""
+    if not len(x):
+        return np.nan, np.nan
+    slope, _ = slope_of(x, y, grain)
+    rest = pd.Series(wanted - (y - slope * x)).groupby(np.asarray(grain)).mean()
+    return slope, float((rest / slope).mean())

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-__all__ = ["equal_weights", "mean_of", "median_of", "quantiles", "slope_error", "slope_of"]
+__all__ = ["equal_weights", "jackknife_error", "mean_of", "median_of", "quantiles", "slope_error", "slope_of"]
 
 N_BOOTSTRAP = 2000
 
@@ -78,7 +78,9 @@ def median_of(values, group=None, seed=0, cell=None):
     -------
     dict
         median, error (standard deviation of the medians of the bootstrap), low, high (16 % and 84 % of the values),
-        n. NaN where there is no value, error NaN for fewer than two groups.
+        n. NaN where there is no value, error NaN for fewer than two groups. The bootstrap draws from all values
+        together, so that cells with a single one count as uncertain too; where cells differ by themselves, the error
+        takes in these differences and is an upper limit.
     """
     values = np.asarray(values, dtype=float)
     group = np.arange(len(values)) if group is None else np.asarray(group)
@@ -109,23 +111,49 @@ def mean_of(values, cell=None):
     values : array_like, shape (n,)
         What is not finite is left out.
     cell : array_like, shape (n,), optional
-        Values of all cells count alike (`equal_weights`); default: each value does.
+        Values of all cells count alike (`equal_weights`); default: one cell.
 
     Returns
     -------
     mean, error : float
-        NaN without values; the error is NaN for fewer than two.
+        NaN without values. The error comes from the scatter within the cells: those that there are are meant, and by
+        how much they differ is no uncertainty of their mean. A cell with a single value is taken to scatter as the
+        others do on average; NaN where no cell has two.
     """
     values = np.asarray(values, dtype=float)
     there = np.isfinite(values)
-    values, n = values[there], int(there.sum())
-    if not n:
+    values = values[there]
+    if not len(values):
         return np.nan, np.nan
-    weights = np.ones(n) if cell is None else equal_weights(np.asarray(cell)[there])
-    mean = float(np.sum(weights * values) / n)
-    if n < 2:
-        return mean, np.nan
-    return mean, float(np.sqrt(np.sum((weights * (values - mean)) ** 2) / (n * (n - 1))))
+    _, cell = np.unique(np.zeros(len(values)) if cell is None else np.asarray(cell)[there], return_inverse=True)
+    count = np.bincount(cell)
+    mean_in = np.bincount(cell, values) / count
+    square = np.bincount(cell, (values - mean_in[cell]) ** 2)
+    several = count > 1
+    if not several.any():
+        return float(mean_in.mean()), np.nan
+    scatter = np.full(len(count), square.sum() / (count - 1).sum())
+    scatter[several] = square[several] / (count[several] - 1)
+    return float(mean_in.mean()), float(np.sqrt(np.sum(scatter / count)) / len(count))
+
+
+def jackknife_error(left_out):
+    """Standard error of an estimate from those without one group after the other.
+
+    Parameters
+    ----------
+    left_out : array_like, shape (n,)
+        The estimate without group 1 ... n.
+
+    Returns
+    -------
+    float
+        Root of (n - 1)/n times the sum of squares about their mean (Quenouille 1956, Tukey 1958): for a mean the
+        textbook's. NaN for fewer than two groups, and where an estimate is not finite.
+    """
+    left_out = np.asarray(left_out, dtype=float)
+    n = len(left_out)
+    return float(np.sqrt((n - 1) / n * np.sum((left_out - left_out.mean()) ** 2))) if n > 1 else np.nan
 
 
 def slope_of(x, y, group=None, weights=None):

@@ -151,8 +151,9 @@ rule figure5:
 
 rule grain_page:
     input:
-        PLAN.figure5_files(
-            "<results>/spinup/{{drive}}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+        lambda w: PLAN.figure5_files(
+            f"<results>/spinup/{w.drive}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc",
+            w.drive,
         ),
     output:
         report(

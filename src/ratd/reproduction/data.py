@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ratd import io
+from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
 from ratd.fragmentation import fragment_table
 
@@ -172,8 +173,12 @@ class Data:
 
     @cached_property
     def calibration(self):
-        """Calibration of the drive literal, a Dataset, or None."""
-        return io.read(self.path(CALIBRATION), "calibration") if self.has(CALIBRATION) else None
+        """Calibration of the drive literal, a Dataset, or None. The fit is made anew from the runs in the file."""
+        if not self.has(CALIBRATION):
+            return None
+        found = io.read(self.path(CALIBRATION), "calibration")
+        runs = found[list(CALIBRATION_COLUMNS)]
+        return runs.merge(calibrate(runs.to_dataframe(), found["omega_onset"].item()))
 
     @cached_property
     def formulae(self):
