@@ -22,6 +22,7 @@ __all__ = [
     "MARKS",
     "calibrate",
     "calibration_table",
+    "onset",
     "printed_acceleration",
     "step_ratios",
 ]
@@ -74,6 +75,12 @@ def printed_acceleration(angular_acceleration, timestep_factor):
     return angular_acceleration * PRINTED_STEP / timestep_factor
 
 
+def onset(run):
+    """omega [rad/s] at which a spin-up run has lost `ONSET_LOSS` of its initial mass; NaN where it has not."""
+    gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
+    return float(run["omega"].values[gone.argmax()]) if gone.any() else np.nan
+
+
 def calibration_table(runs):
     """Where the mass of each run starts to fall.
 
@@ -93,9 +100,8 @@ def calibration_table(runs):
         marks = disruption(run)
         row = {name: run.attrs[name] for name in CALIBRATION_COLUMNS if name in run.attrs}
         row |= {name: float(marks[name]) for name in CALIBRATION_COLUMNS if name in marks}
-        gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
         row["printed_acceleration"] = printed_acceleration(row["angular_acceleration"], row["timestep_factor"])
-        row["omega_mass_99"] = float(run["omega"].values[gone.argmax()]) if gone.any() else np.nan
+        row["omega_mass_99"] = onset(run)
         rows.append(row)
     table = pd.DataFrame(rows, columns=list(CALIBRATION_COLUMNS))
     return table.sort_values(["seed", "printed_acceleration", "timestep_factor"], ignore_index=True)

@@ -78,7 +78,7 @@ def median_of(values, group=None, seed=0, cell=None):
     -------
     dict
         median, error (standard deviation of the medians of the bootstrap), low, high (16 % and 84 % of the values),
-        n. NaN where there is no value, error NaN for fewer than two groups. The bootstrap draws from all values
+        n. NaN where there is no value, error NaN for fewer than three groups. The bootstrap draws from all values
         together, so that cells with a single one count as uncertain too; where cells differ by themselves, the error
         takes in these differences and is an upper limit.
     """
@@ -94,7 +94,7 @@ def median_of(values, group=None, seed=0, cell=None):
     low, median, high = _of_sorted(values, weights, len(values), np.array([0.16, 0.5, 0.84]))
     n_groups = member.max() + 1
     error = np.nan
-    if n_groups > 1:
+    if n_groups > 2:  # the middle of two draws of two is nearly always one of three values
         rng = np.random.Generator(np.random.PCG64(seed))
         draws = rng.integers(n_groups, size=(N_BOOTSTRAP, n_groups))
         often = np.array([np.bincount(draw, minlength=n_groups) for draw in draws])[:, member]

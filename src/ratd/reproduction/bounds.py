@@ -3,9 +3,30 @@
 import numpy as np
 import pandas as pd
 
+from ratd.beyond import SPLIT
 from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, eq33
 from ratd.materials import get_material
+from ratd.units import NM
+
+
+def split_sizes(table):
+    """Grains below `ratd.beyond.SPLIT` and those from it on, as far as there are any, list of DataFrame."""
+    large = table["a_eff"] >= SPLIT * (1 - 1e-9)
+    return [part for part in (table[~large], table[large]) if len(part)]
+
+
+def sizes_of(table):
+    """Sizes of a table of grains, such as "50–200 nm", or "350 nm"."""
+    ends = dict.fromkeys(f"{end / NM:g}" for end in (table["a_eff"].min(), table["a_eff"].max()))
+    return f"{'–'.join(ends)} nm"
+
+
+def by_type_and_size(table):
+    """(type, sizes as text, grains) of each type and part of `split_sizes`, list."""
+    return [
+        (kind, sizes_of(part), part) for kind, own in table.groupby("type", sort=False) for part in split_sizes(own)
+    ]
 
 
 def table3_omega(table, materials=None):

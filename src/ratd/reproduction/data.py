@@ -153,6 +153,11 @@ class Data:
         return self._each_drive("figure4/{drive}.nc", io.read_runs)
 
     @cached_property
+    def shown(self):
+        """Drive -> spin-up run of the grain of Fig. 5, in a list."""
+        return self._each_drive("figure5/{drive}.nc", io.read_runs)
+
+    @cached_property
     def grains(self):
         """Grains of Fig. 1, list of `ratd.Grain`."""
         paths = self.figure_files(1).get("data", []) if self.drives else []

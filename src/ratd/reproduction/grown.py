@@ -1,19 +1,24 @@
-"""Rows of what is known before the spin-up: the ensemble, radii, porosity, time step."""
+"""Rows of what is known before the spin-up: radii, porosity, fractal dimension, time step."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from ratd.beyond import SPLIT
 from ratd.calibration import PRINTED_STEP
-from ratd.ensemble import cell_statistics
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, cell_statistics, size_key
 from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
+from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.text import (
     NOTHING,
     Answer,
     Row,
+    all_of,
     answer,
     between,
+    lies_in,
     near,
     number,
     over,
@@ -23,62 +28,100 @@ from ratd.reproduction.text import (
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
-POROSITY_REASON = (
-    "With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a solid sphere P = -0.84. Single grains spread, small ones "
-    "most; “holds” looks at the means of the sizes, to a tenth."
-)
+STAGNATES = 0.05
+"""Change of the mean porosity from `SPLIT` on that counts as none."""
+COMPACT = 3.0
+"""Fractal dimension above which a fit means nothing: that of a solid body."""
+MOST = (0.025, 0.975)
+"""Quantiles between which 95 % of our grains lie."""
+OF_FIG_1 = {"N_mon": "n_monomers", "N_con": "n_contacts", "a_out [nm]": "enclosing_radius"}
+"""What Fig. 1 tells of each grain -> column of the table of grains."""
 
 
 def rows(data):
     """Rows that need no spin-up, list of Row."""
-    result = [_coverage(data), *_step(data)]
     table = data.grown
+    mean = mean_of(table["mean_monomer_radius"], cell_of(table))
+    printed, growth = PRINTED["mean_radius"], data.plan.config["growth"]
+    radius = Row(
+        "mean_radius",
+        {"": replace(answer(*mean, printed), text=f"{with_error(*(value / NM for value in mean))} nm")},
+        f"With monomers of {PAPER_MEAN_RADIUS / NM:g} nm a grain of 500 nm would hold "
+        f"{(500 * NM / PAPER_MEAN_RADIUS) ** 3:.0f} of them, where Fig. 1 has {GRAINS['BA', 500][0]}; median "
+        f"{growth['median_nm']:g} nm with sigma_ln {growth['sigma_ln']:g} gives the numbers of Fig. 1.",
+    )
+    return [radius, *_porosity(table), *_fractal(table), *_step(data)]
+
+
+def _porosity(table):
     cells = cell_statistics(table, by=("type", "a_eff"))
-    mean = mean_of(table["mean_monomer_radius"] / NM)
-    printed = PRINTED["mean_radius"]
-    result.append(
-        Row(
-            "mean_radius",
-            {
-                "": Answer(
-                    f"{with_error(*mean)} nm",
-                    over(mean[0] * NM, printed.value),
-                    near(mean[0] * NM, printed.value),
-                )
-            },
-            "As printed a grain of 500 nm would hold 15 000 monomers; median 20 nm with sigma_ln 0.844 gives the "
-            "numbers of Fig. 1.",
-        )
+    reason = (
+        f"With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a solid sphere P = {printed_porosity(0.0):.2f}. Single "
+        "grains spread, small ones most."
     )
-    for kind in ("BA", "BAM1", "BAM2"):
+    result = []
+    for kind in dict.fromkeys(table["type"]):
         here, own = cells[cells["type"] == kind], table[table["type"] == kind]
-        if not len(own):
-            continue
-        means = between(here["porosity_mean"].min(), here["porosity_mean"].max())
-        low, high = own["porosity"].min(), own["porosity"].max()
-        keys = [f"porosity_{kind}"] + ["porosity_BAM2_text"] * (kind == "BAM2")
-        for key in keys:
-            inside = bool(here["porosity_mean"].min() > 0.9 * PRINTED[key].value[0]) and bool(
-                here["porosity_mean"].max() < 1.1 * PRINTED[key].value[1]
-            )
-            found = range_answer(low, high, PRINTED[key], more=f" (means of the sizes {means})", holds=inside)
-            result.append(Row(key, {"": found}, POROSITY_REASON))
-    result += [Row("porosity_slope", {"": Answer(_porosity_change(table))})]
-    fractal = median_of(table.loc[table["type"] == "BA", "fractal_dimension"])
-    result.append(
-        Row(
-            "fractal_BA",
-            {"": answer(fractal["median"], fractal["error"], PRINTED["fractal_BA"])},
-            "Median; Eq. 8 leaves the fitted range of distances open.",
-        )
+        least, greatest = here["porosity_mean"].min(), here["porosity_mean"].max()
+        for key in (f"porosity_{kind}", f"porosity_{kind}_text"):
+            if key in PRINTED:
+                low, high = PRINTED[key].value
+                means = f" (means of the sizes {between(least, greatest)})"
+                inside = bool(0.9 * low < least and greatest < 1.1 * high)
+                found = range_answer(own["porosity"].min(), own["porosity"].max(), PRINTED[key], inside, means)
+                result.append(Row(key, {"": found}, reason))
+    changes = _changes(table, "porosity", SPLIT, mean_of)
+    holds = all_of(lies_in(*change, -STAGNATES, STAGNATES) for _, _, change in changes)
+    before = [f"{kind} {number(_before(table, kind))}" for kind, _, _ in changes]
+    reason = f"From the smallest size to {SPLIT / NM:g} nm it changes by {', '.join(before)}."
+    return [*result, Row("porosity_slope", {"": Answer(_told(changes), holds=holds)}, reason)]
+
+
+def _fractal(table):
+    known = table[table["fractal_dimension"].notna()]
+    own = known[known["type"] == "BA"]
+    fractal = median_of(own["fractal_dimension"], cell=cell_of(own))
+    many = f"{int((known['fractal_dimension'] > COMPACT).sum())} of {len(known)}"
+    reason = (
+        f"Median. The paper says this of ballistic growth in general; Eq. 8 leaves the range of distances of the fit "
+        f"open. {many} fits, of grains of few monomers, give more than {COMPACT:g}, which means nothing."
     )
-    return result
+    share = table["fractal_dimension"].notna().groupby(size_key(table["a_eff"])).mean()
+    from_size = share.index[share == 1].min() * 1e-12  # nothing where no size has it for all
+    changes = _changes(known, "fractal_dimension", from_size, lambda v: list(median_of(v).values())[:2])
+    holds = all_of(lies_in(*change, 0.0) for _, _, change in changes)
+    return [
+        Row("fractal_BA", {"": answer(fractal["median"], fractal["error"], PRINTED["fractal_BA"])}, reason),
+        Row("fractal_slope", {"": Answer(_told(changes), holds=holds)}, "Sizes at which every grain has a fit."),
+    ]
 
 
-def _coverage(data):
-    total = PRINTED["ensemble"].value
-    found = {drive: Answer(str(len(table)), number(len(table) / total)) for drive, table in data.tables.items()}
-    return Row("ensemble", found, "What two cores compute; see the coverage by cell.")
+def _changes(table, column, start, statistic):
+    """(type, sizes in nm, (change, error)) of a column, from the size nearest to `start` to the greatest of each type.
+
+    `statistic` makes value and error of the grains of a size.
+    """
+    found = []
+    for kind, own in table.groupby("type", sort=False):
+        sizes = size_key(own["a_eff"])
+        known = np.unique(sizes)
+        ends = known[np.argmin(np.abs(known * 1e-12 - start))], known[-1]
+        if np.isfinite(start) and ends[0] < ends[1]:
+            first, last = (statistic(own.loc[sizes == end, column]) for end in ends)
+            found.append((kind, [end * 1e-12 / NM for end in ends], (last[0] - first[0], np.hypot(first[1], last[1]))))
+    return found
+
+
+def _told(changes):
+    parts = [f"{kind} {with_error(*change)} ({ends[0]:g} to {ends[1]:g} nm)" for kind, ends, change in changes]
+    return "; ".join(parts) or NOTHING
+
+
+def _before(table, kind):
+    """Change of the mean porosity of a type from its smallest size to the one nearest to `SPLIT`."""
+    own = table[table["type"] == kind]
+    means = own["porosity"].groupby(size_key(own["a_eff"])).mean()
+    return means.iloc[np.argmin(np.abs(means.index * 1e-12 - SPLIT))] - means.iloc[0]
 
 
 def _step(data):
@@ -97,39 +140,33 @@ def _step(data):
     return [Row("step", {"": found}, "Eq. 31 as printed gives parts of a ps; “ns” does not follow from it.")]
 
 
-def _porosity_change(table):
-    """Change of the mean porosity from the sizes around `SPLIT` to the largest size of each type."""
-    parts = []
-    for kind, own in table.groupby("type", sort=False):
-        sizes = own["a_eff"].round(13)
-        largest = sizes.max()
-        start = min(set(sizes), key=lambda size: abs(size - SPLIT))
-        if start == largest:
-            start = sizes.min()
-        first, last = (mean_of(own.loc[sizes == size, "porosity"]) for size in (start, largest))
-        change = with_error(last[0] - first[0], np.hypot(first[1], last[1]))
-        parts.append(f"{kind} {change} ({start / NM:g} to {largest / NM:g} nm)")
-    return "; ".join(parts)
-
-
-def figure1_rows(data):
-    """Cells of a table in Markdown: the nine grains of Fig. 1, printed and ours, one each.
+def figure1_table(data):
+    """The nine grains of Fig. 1: head and rows of a table in Markdown, and where the printed ones lie among ours.
 
     Returns
     -------
-    list of list of str
-        type, size; N_mon, N_con, a_out: printed, ours, ratio.
+    head : list of str
+        type, size, and for each of `OF_FIG_1`: printed, ours, range of `MOST` of our grains of that type and size.
+    rows : list of list of str
+    outside : list of str
+        Printed values outside that range, such as "a_out of BAM1 350 nm".
     """
-    result = []
+    head = ["type", "size [nm]"]
+    head += [f"{what}{of}" for what in OF_FIG_1 for of in (", printed", ", ours", ", 95 % of ours")]
     ours = {(grain.type, round(grain.a_eff / NM)): grain for grain in data.grains}
-    for (kind, size), printed in GRAINS.items():
-        grain = ours.get((kind, size))
-        cells = [kind, str(size)]
-        values = (grain.n_monomers, grain.n_contacts, grain.enclosing_radius / NM) if grain else (np.nan,) * 3
-        for own, value in zip(values, printed, strict=True):
-            cells += [f"{value:g}", f"{own:.4g}" if grain else NOTHING, number(own / value)]
-        result.append(cells)
-    return result
+    size = np.rint(data.grown["a_eff"] / NM).astype(int)
+    rows, outside = [], []
+    for (kind, nm), printed in GRAINS.items():
+        grain, all_ours = ours.get((kind, nm)), data.grown[(data.grown["type"] == kind) & (size == nm)]
+        cells = [kind, str(nm)]
+        for (what, column), value in zip(OF_FIG_1.items(), printed, strict=True):
+            unit = NM if column == "enclosing_radius" else 1
+            low, high = all_ours[column].quantile(MOST) / unit if len(all_ours) else (np.nan, np.nan)
+            cells += [f"{value:g}", f"{getattr(grain, column) / unit:.4g}" if grain else NOTHING, between(low, high)]
+            if value < low or value > high:
+                outside.append(f"{what.split()[0]} of {kind} {nm} nm ({'below' if value < low else 'above'})")
+        rows.append(cells)
+    return head, rows, outside
 
 
 def contacts_over_printed(data):

@@ -10,27 +10,27 @@ from ratd.reproduction.paper import PRINTED, Printed
 NOTHING = "–"
 NO_DATA = "no data"
 NEAR = 1.25
-"""A printed number holds where ours is within this factor of it, unless the paper says "roughly"."""
+"""A printed number holds where ours is within this factor of it ("within a quarter")."""
 ROUGHLY = 2.0
-"""The same where it does."""
+"""The same where the paper says "roughly" or gives an order of magnitude."""
 VERDICT = {True: "yes", False: "no", None: NOTHING}
 
 
 def number(value):
-    """A number to three figures, such as "0.123", "45.6" or "1.23e8"."""
+    """A number to three figures, or whole, such as "0.123", "45.6", "1234" or "1.23e8"."""
     if value is None or not np.isfinite(value):
         return NOTHING
     if value != 0 and not 1e-3 <= abs(value) < 1e5:
         mantissa, exponent = f"{value:.2e}".split("e")
         return f"{mantissa}e{int(exponent)}"
-    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    return f"{value:.3g}" if abs(value) < 999.5 else f"{value:.0f}"
 
 
 def with_error(value, error):
     """A value with its error, such as "1.013 ± 0.024" or "(1.02 ± 0.03)e8"."""
     if value is None or not np.isfinite(value):
         return NOTHING
-    if not error > 1e-9 * abs(value):  # the rounding of equal values
+    if not error > 1e-5 * abs(value):  # less than is shown, or the rounding of equal values
         return number(value)
     if value == 0 or 1e-3 <= abs(value) < 1e4:
         return measured(value, error)
@@ -76,28 +76,45 @@ def over(value, printed):
 
 
 def near(values, printed, factor=NEAR):
-    """Whether values lie within a factor of the printed ones, None where one is not finite."""
+    """Whether values without an error lie within a factor of the printed ones, None where one is not finite."""
     ratio = np.atleast_1d(values) / np.atleast_1d(printed)
     return bool(((ratio > 1 / factor) & (ratio < factor)).all()) if np.isfinite(ratio).all() else None
 
 
-def beyond(value, error, limit):
-    """Whether a value is above a limit, None where it lies within two errors of it."""
-    return bool(value > limit) if abs(value - limit) > 2 * error else None
+def lies_in(value, error, low=-np.inf, high=np.inf):
+    """Whether a value lies in a range, of which the ends count.
+
+    Returns
+    -------
+    bool or None
+        True and False only where the value and two errors on both sides of it do; None where the data do not tell,
+        also where the error is not known.
+    """
+    if not np.isfinite(value) or not np.isfinite(error):
+        return None
+    least, most = value - 2 * error, value + 2 * error
+    if low <= least and most <= high:
+        return True
+    return False if most < low or least > high else None
 
 
-def answer(value, error, printed, factor=NEAR, holds=None):
-    """Answer of a value with an error to a `Printed`; it holds within a factor, unless it is told."""
-    if printed.value is None:
-        return Answer(with_error(value, error), NOTHING, holds)
-    found = near(value, printed.value, factor) if holds is None else holds
-    return Answer(with_error(value, error), over(value, printed.value), found)
+def all_of(verdicts):
+    """Verdict on a finding that has several parts: False where one fails, True where all hold, else None."""
+    verdicts = list(verdicts)
+    if False in verdicts:
+        return False
+    return True if verdicts and None not in verdicts else None
 
 
-def range_answer(low, high, printed, factor=NEAR, more="", holds=None):
-    """Answer of a range to a `Printed` with a range, as `answer`."""
-    found = near((low, high), printed.value, factor) if holds is None else holds
-    return Answer(between(low, high) + more, over((low, high), printed.value), found)
+def answer(value, error, printed, factor=NEAR):
+    """Answer of a value with an error to a `Printed` number; it holds within a factor."""
+    holds = lies_in(value, error, printed.value / factor, printed.value * factor)
+    return Answer(with_error(value, error), over(value, printed.value), holds)
+
+
+def range_answer(low, high, printed, holds, more=""):
+    """Answer of a range to a `Printed` with a range."""
+    return Answer(between(low, high) + more, over((low, high), printed.value), holds)
 
 
 @dataclass
@@ -129,23 +146,22 @@ def row_table(rows, drives):
     Parameters
     ----------
     rows : list of Row
-        They are put into the order of the paper.
+        They are put into the order of `PRINTED`.
     drives : list of str
+        Drives that the rows have answers for; empty where they depend on none.
 
     Returns
     -------
     str
     """
-    head = ["where", "what", "printed"]
-    for drive in drives:
+    head = ["where", "what", "printed", "holds if"]
+    for drive in drives or ["ours"]:
         head += [drive, "ratio", "holds"]
     lines = []
     for row in sorted(rows, key=lambda row: list(PRINTED).index(row.key)):
-        cells = [row.printed.place, row.printed.what, row.printed.text]
-        for k, drive in enumerate(drives):
-            common = row.answers.get("")
-            own = row.answers.get(drive) or (common if k == 0 else Answer("(same)") if common else None)
-            own = own or Answer(NO_DATA)
+        cells = [row.printed.place, row.printed.what, row.printed.text, row.printed.rule or NOTHING]
+        for drive in drives or [""]:
+            own = row.answers.get(drive, Answer(NO_DATA))
             cells += [own.text, own.ratio, VERDICT[own.holds]]
         lines.append([*cells, row.reason if row.answers else ""])
     return markdown_table([*head, "why they differ"], lines)

@@ -1,0 +1,178 @@
+"""Rows of the course of a disruption: loss of mass, contacts, fragments (Figs. 4 and 5)."""
+
+import numpy as np
+
+from ratd.calibration import onset
+from ratd.ensemble import cell_of
+from ratd.marks import disruption
+from ratd.reproduction.argument import is_calibrated
+from ratd.reproduction.bounds import by_type_and_size
+from ratd.reproduction.text import (
+    NOTHING,
+    ROUGHLY,
+    Answer,
+    all_of,
+    answer,
+    drive_rows,
+    number,
+    over,
+    with_error,
+)
+from ratd.statistics import median_of
+from ratd.units import NM
+
+LEVEL = (
+    "prescribed: a grain that turns as a whole cannot hold the printed omega (What the contacts can hold). literal: it "
+    "hardly turns, and omega follows d omega/dt and the step (What the literal drive does)."
+)
+BAM = ("BAM1", "BAM2")
+FIRST_HALF = 0.5
+"""Part of the mass of a grain whose fragments the data hold (`ratd.fragmentation.HALF`)."""
+MOSTLY = 0.8
+"""Share that counts as "almost completely"."""
+LARGER = 0.95
+"""Mass of the largest fragment below which larger ones have left."""
+
+
+def rows(data):
+    """Rows of the course of a disruption, list of Row."""
+    cell = _of_cell(data)
+    return [
+        _onset(data),
+        drive_rows(
+            "decade",
+            cell,
+            lambda t, p: median_answer(t["omega_end"] / t["omega_first_loss"], p, ROUGHLY),
+            "The end is one contact left; the last two monomers of a grain can hold to many times omega_disr.",
+        ),
+        drive_rows(
+            "gain",
+            {drive: table[table["type"] == "BAM2"] for drive, table in data.tables.items()},
+            _gain,
+            "The median of all BAM2 grains; monomers of a grain that breaks at its weakest cut hardly move before.",
+        ),
+        drive_rows(
+            "quarter",
+            data.tables,
+            _quarter,
+            "Where it is far below 1, large pieces of a grain have left before the stress of what is left peaks.",
+        ),
+        *_whole(data),
+        drive_rows(
+            "blocks",
+            {drive: table[table["half"] & table["type"].isin(BAM)] for drive, table in data.fragments.items()},
+            _blocks,
+            "A grain that breaks at its weakest cut parts into large pieces. Those that have left are not spun up "
+            "further; whether the paper counts them as they leave is not said.",
+        ),
+    ]
+
+
+def median_answer(values, printed, factor, cell=None):
+    """Answer with the median of some values and its bootstrap error, or None without values."""
+    found = median_of(values, cell=cell)
+    return answer(found["median"], found["error"], printed, factor) if found["n"] else None
+
+
+def _of_cell(data):
+    """Drive -> table of the grains of the cell of Fig. 4."""
+    own = data.plan.config["figures"]["figure4"]
+    if own is None:
+        return {}
+    return {
+        drive: table[
+            (table["material"] == own["material"])
+            & (table["type"] == own["type"])
+            & np.isclose(table["a_eff"], own["size_nm"] * NM, rtol=1e-6, atol=0)
+        ]
+        for drive, table in data.tables.items()
+    }
+
+
+def _onset(data):
+    """Where mass loss begins in Fig. 4, which decides nothing about a drive that was fixed on it."""
+    fixed = is_calibrated(data)
+
+    def evaluate(drive, runs, printed):
+        found = median_of([onset(run) for run in runs])
+        if not found["n"]:
+            return None
+        own = answer(found["median"], found["error"], printed)
+        return Answer(f"{own.text} (fixed on this)", own.ratio) if drive == "literal" and fixed else own
+
+    sources = {drive: (drive, runs) for drive, runs in data.course.items()}
+    return drive_rows("onset", sources, lambda source, p: evaluate(*source, p), f"1 % of the mass lost. {LEVEL}")
+
+
+def _gain(table, printed):
+    found = median_of(table["n_contacts_max"] / table["n_contacts"], cell=cell_of(table))
+    if not found["n"]:
+        return None
+    text = with_error(found["median"], found["error"])
+    return Answer(text, holds=bool(found["median"] > 1))
+
+
+def _quarter(table, printed):
+    parts, verdicts = [], []
+    for kind, sizes, part in by_type_and_size(table):
+        found = median_of(part["omega_mass_75"] / part["omega_disr"], cell=cell_of(part))
+        if found["n"]:
+            own = answer(found["median"], found["error"], printed)
+            parts.append(f"{kind} {sizes} {own.text}")
+            verdicts.append(own.holds)
+    return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
+
+
+def _whole(data):
+    """Rows on the mass of the largest fragment at parts of omega_disr, of the cell of Fig. 4 and of Fig. 5."""
+    marked = [{drive: [(run, disruption(run)) for run in runs] for drive, runs in of.items()}
+              for of in (data.course, data.shown)]  # fmt: skip
+    course, shown = marked
+
+    def row(key, part, holds, reason=""):
+        def evaluate(source, printed):
+            drive, runs = source
+            values = _masses(runs, part)
+            if not len(values):
+                return None
+            middle = float(np.median(values))
+            ends = f"{values.min():.3f}–{values.max():.3f} of {len(values)}" if len(values) > 1 else "one grain"
+            text = f"{middle:.3f} ({ends})"
+            for value in _masses(shown.get(drive, []), part):
+                text += f"; grain of Fig. 5 {value:.3f}"
+            return Answer(text, over(middle, printed.value) if printed.value else NOTHING, holds(middle))
+
+        return drive_rows(key, {drive: (drive, runs) for drive, runs in course.items()}, evaluate, reason)
+
+    early = (
+        "Slow spin-up breaks a grain at its weakest cut. Given are median, least and greatest of the cell of Fig. 4."
+    )
+    return [
+        row("whole_01", 0.1, lambda middle: bool(middle > 1 - 1e-9)),
+        row("whole_08", 0.8, lambda middle: bool(middle < 1 - 1e-9), early),
+        row("whole_10", 1.0, lambda middle: bool(middle < LARGER), early),
+    ]
+
+
+def _masses(runs, part):
+    """Mass of the largest fragment over that of the grain, at a part of omega_disr, of each run that has one."""
+    values = np.array([_mass_at(run, part * float(mark["omega_disr"])) for run, mark in runs])
+    return values[np.isfinite(values)]
+
+
+def _mass_at(run, omega):
+    """Part of the mass that the largest fragment holds at the first record from omega [rad/s] on."""
+    if not np.isfinite(omega):
+        return np.nan
+    k = min(int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))), run.sizes["record"] - 1)
+    return float(run["mass"].values[k]) / run.attrs["initial_mass"]
+
+
+def _blocks(part, printed):
+    if not len(part):
+        return None
+    mass = part["weight"] * part["mass_fraction"]
+    share = mass[part["fragment_n_monomers"] == 1].sum() / mass.sum()
+    most = FIRST_HALF * share + 1 - FIRST_HALF  # if nothing but single monomers left afterwards
+    text = f"{number(share)} of the first half of the mass, so at most {number(most)} of all"
+    return Answer(text, over(most, printed.value), True if share >= MOSTLY else False if most < MOSTLY else None)

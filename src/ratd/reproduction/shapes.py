@@ -1,0 +1,105 @@
+"""Rows of the shapes: oblate or prolate, axis ratios, porosity, at rest and at disruption (Sect. 7.3 and Fig. 6)."""
+
+import numpy as np
+
+from ratd.beyond import oblate_share
+from ratd.ensemble import cell_of
+from ratd.reproduction.bounds import sizes_of, split_sizes
+from ratd.reproduction.course import BAM
+from ratd.reproduction.text import NOTHING, Answer, drive_rows, lies_in, near, over, with_error
+from ratd.statistics import mean_of, median_of
+from ratd.units import NM
+
+EARLY = "A BAM grain that breaks at its weakest cut keeps its shape up to then."
+
+
+def rows(data):
+    """Rows of the shapes, list of Row."""
+    # the shape of a grain hardly changes when it comes to rest
+    grown = {"": data.grown.assign(**{f"axis_{name}_start": data.grown[f"axis_{name}"] for name in "abc"})}
+    tables = data.tables
+    return [
+        drive_rows("half", grown, _oblate("start", 0.4, 0.6)),
+        drive_rows("oblate_start_200", grown, _oblate("start", 0.4, 0.6, 200)),
+        *(drive_rows(f"oblate_start_{size}", grown, _oblate("start", 0.3, 0.5, size)) for size in (350, 500)),
+        drive_rows("c_over_b", grown, _slender),
+        drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), EARLY),
+        drive_rows("oblate_disr_BA", tables, _oblate("disr", 0.0, 0.5, 200, ("BA",))),
+        drive_rows("b_over_a", tables, _flattest, EARLY),
+        drive_rows("b_over_a_BA", tables, _less_flat, "Arms of BA grains swing out and stretch before they part."),
+        drive_rows("porosity_change_BA", tables, _loosened(("BA",), -np.inf, 0.0)),
+        drive_rows("porosity_change_BAM", tables, _loosened(BAM, 0.0, np.inf), EARLY),
+    ]
+
+
+def _chosen(table, sizes=None, types=None):
+    if sizes is not None:
+        table = table[np.isin(np.round(table["a_eff"] / NM), sizes)]
+    return table if types is None else table[table["type"].isin(types)]
+
+
+def _oblate(when, low, high, size=None, types=None):
+    """What evaluates the share of oblate grains, which is to lie between `low` and `high`."""
+
+    def evaluate(table, printed):
+        table = _chosen(table, size, types)
+        share, error, n_oblate, n = oblate_share(table, when)
+        if not n:
+            return None
+        by = "type" if types == BAM else "material"
+        parts = ", ".join(f"{name} {oblate_share(part, when)[2]}" for name, part in table.groupby(by, sort=False))
+        text = f"{with_error(share, error)} ({n_oblate} of {n}: {parts})"
+        if when == "disr" and table["a_eff"].nunique() > 1:
+            sides = [(sizes_of(part), oblate_share(part, when)) for part in split_sizes(table)]
+            text += "; " + ", ".join(f"{sizes} {with_error(*own[:2])}" for sizes, own in sides)
+        ratio = over(share, printed.value) if printed.value else NOTHING
+        return Answer(text, ratio, lies_in(share, error, low, high))
+
+    return evaluate
+
+
+def _slender(table, printed):
+    here = _chosen(table, (350, 500))
+    ratio = here["axis_c_start"] / here["axis_b_start"]
+    known = here[ratio.notna()]
+    if not len(known):
+        return None
+    share, error = mean_of(ratio[ratio.notna()] < 1.7, cell_of(known))
+    return Answer(f"{int((ratio < 1.7).sum())} of {len(known)}", holds=lies_in(share, error, 0.5))
+
+
+def _flatness(table, types):
+    """b/a of the largest fragments at omega_disr, and the cell of each, of the grains of some types."""
+    here = _chosen(table, types=types)
+    here = here[here["axis_b_disr"].notna()]
+    return here["axis_b_disr"] / here["axis_a_disr"], cell_of(here)
+
+
+def _flattest(table, printed):
+    ratio, cell = _flatness(table, BAM)
+    if not len(ratio):
+        return None
+    text = f"{ratio.max():.3g} (median {median_of(ratio, cell=cell)['median']:.3g})"
+    return Answer(text, over(ratio.max(), printed.value), near(ratio.max(), printed.value))
+
+
+def _less_flat(table, printed):
+    both = [_flatness(table, types) for types in (("BA",), BAM)]
+    if not all(len(ratio) for ratio, _ in both):
+        return None
+    ba, bam = (median_of(ratio, cell=cell) for ratio, cell in both)
+    value = ba["median"] / bam["median"]
+    error = value * np.hypot(ba["error"] / ba["median"], bam["error"] / bam["median"])
+    text = f"{with_error(value, error)} (BA up to {both[0][0].max():.3g})"
+    return Answer(text, holds=lies_in(value, error, 0.0, 1.0))
+
+
+def _loosened(types, low, high):
+    """What evaluates the mean change of the porosity, which is to lie between `low` and `high`."""
+
+    def evaluate(table, printed):
+        here = _chosen(table, types=types)
+        change = mean_of(here["porosity_disr"] - here["porosity_start"], cell_of(here))
+        return Answer(with_error(*change), holds=lies_in(*change, low, high)) if np.isfinite(change[0]) else None
+
+    return evaluate
