@@ -12,9 +12,12 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib import font_manager
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from ratd.bound import tensile_strength_tatsuuma2019
 from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
@@ -23,12 +26,15 @@ from ratd.figures import figure2, figure4, figure6, figure7, figure8, figure10, 
 from ratd.figures.figure6 import axis_ratios
 from ratd.figures.figure8 import predictions
 from ratd.figures.style import (
+    GREY,
     ONE_COLUMN,
     TWO_COLUMNS,
     TYPE_COLOUR,
     TYPE_MARKER,
     logarithmic,
+    mean_and_range,
     offsets,
+    own_fonts_first,
     power_of_ten,
     styled,
     type_style,
@@ -168,6 +174,18 @@ def test_texts_are_readable(figures, monkeypatch):
             assert apart, (name, one, other)
 
 
+@pytest.mark.parametrize("style", ["normal", "italic"])
+def test_fonts_of_the_system_do_not_matter(style, monkeypatch):
+    """The same name in another file, in whatever order the system lists them."""
+    fonts = font_manager.fontManager
+    listed = list(fonts.ttflist)
+    foreign = font_manager.FontEntry(fname="/elsewhere/DejaVuSans.ttf", name="DejaVu Sans", style=style)
+    monkeypatch.setattr(fonts, "ttflist", [foreign, *reversed(listed)])
+    own_fonts_first()
+    found = fonts.findfont(font_manager.FontProperties(family="DejaVu Sans", style=style))
+    assert Path(found).is_relative_to(matplotlib.get_data_path())
+
+
 def test_figures_are_as_wide_as_the_columns(figures):
     width = {name: figure.get_figwidth() for name, figure in figures.items()}
     assert {width["figure2"], width["figure6"], width["figure7"], width["figure10"]} == {TWO_COLUMNS}
@@ -194,6 +212,17 @@ def test_types_differ_in_more_than_colour():
     assert set(TYPE_COLOUR) == set(TYPE_MARKER) and len(set(np.round(grey, 3))) == 3
     style = type_style(["RA", "BA", "XY"])
     assert len({look["color"] for look in style.values()}) == len({look["marker"] for look in style.values()}) == 3
+
+
+def test_a_mean_beside_equal_values_by_rounding_is_drawn():
+    """The mean of three equal numbers may lie an ulp below them: matplotlib refuses bars of negative length."""
+    value = 0.1
+    mean = np.nextafter(value, 0)
+    cells = pd.DataFrame({"x_mean": [mean, 0.2], "x_minimum": [value, 0.1], "x_maximum": [value, 0.4]})
+    axes = Figure().subplots()
+    mean_and_range(axes, [1, 2], cells, "x", type_style(["BA"])["BA"])
+    (bars,) = axes.containers[0][2]
+    np.testing.assert_allclose([segment[:, 1] for segment in bars.get_segments()], [[0.1, 0.1], [0.1, 0.4]])
 
 
 def test_figure2_shows_means_and_ranges():
@@ -274,6 +303,29 @@ def test_figure6_shows_axis_ratios():
         assert (line.get_xdata() > left).all() and (line.get_xdata() < right).all()
 
 
+def test_the_words_of_figure6_stand_where_no_grain_is(monkeypatch):
+    table = make_table(seeds=10)
+    # grains all along the diagonal, and some far to either side of it
+    ratio = np.linspace(1, 4, len(table))
+    table = table.assign(axis_a_disr=1.0, axis_b_disr=ratio, axis_c_disr=ratio**2)
+    table.loc[table["seed"] == 0, "axis_c_disr"] = ratio[table["seed"] == 0]
+    table.loc[table["seed"] == 1, "axis_b_disr"] = 1.0
+    figure = figure6(table)
+    texts = drawn_texts(figure, monkeypatch)
+    for axes in figure.axes:
+        inside = [box for text, box in texts if text.axes is axes and text.get_text().endswith("late")]
+        assert len(inside) == 2
+        points = np.concatenate([line.get_xydata() for line in axes.get_lines() if line.get_marker() != "None"])
+        for x, y in axes.transData.transform(points):
+            marker = Bbox.from_extents(x - 4, y - 4, x + 4, y + 4)
+            assert not any(marker.overlaps(box) for box in inside)
+    prolate, oblate = (next(text for text in axes.texts if text.get_text() == word) for word in ("prolate", "oblate"))
+    (x, y), (other_x, other_y) = (
+        axes.transData.inverted().transform(axes.transAxes.transform(t.get_position())) for t in (prolate, oblate)
+    )
+    assert y > x and other_y < other_x  # c/b and b/a
+
+
 def test_figure7_draws_the_fit_the_bound_and_the_printed_table():
     table = make_table(seeds=3, scatter=0.0)
     fit = fit_ensemble(table, "own", n_bootstrap=5)
@@ -284,16 +336,47 @@ def test_figure7_draws_the_fit_the_bound_and_the_printed_table():
     groups = here.assign(x=np.log(here["n_contacts"] * here["filling_factor"])).groupby("a_eff")
     contacts = np.exp(groups["x"].mean())
     sizes = contacts.index.to_numpy()
-    blue = [line for line in lines(panel, color=TYPE_COLOUR["BAM2"], marker="None")]
+    blue = lines(panel, color=TYPE_COLOUR["BAM2"])
     solid = [line for line in blue if line.get_linestyle() == "-"]
     dashed = [line for line in blue if line.get_linestyle() == "--"]
+    assert [line.get_marker() for line in dashed] == ["^"]
     # Grains on the law: the fitted line is the geometric mean of their omega.
     expected = np.exp(here.assign(y=np.log(here["omega_disr"])).groupby("a_eff")["y"].mean())
     np.testing.assert_allclose(solid[0].get_ydata(), expected, rtol=1e-9)
     np.testing.assert_allclose(dashed[0].get_ydata(), groups["cut_bound"].mean())
-    printed = [line for line in panel.get_lines() if line.get_marker() == "^" and line.get_linestyle() == "-"]
+    printed = lines(panel, marker="^", color=GREY)
     args = (sizes, m.surface_energy, m.density, 20e-9, contacts, 1.0)
     np.testing.assert_allclose(printed[0].get_ydata(), eq33(*args, *TABLE_3["q-S", "BAM2"]))
+
+
+def test_figure7_takes_what_needs_no_spin_up_from_all_grown_grains():
+    grown = make_table(seeds=6)
+    table = grown[grown["seed"] < 2]
+    panel = figure7(table, grown=grown).axes[1]
+    here = grown[(grown["material"] == "q-S") & (grown["type"] == "BA")]
+    (dashed,) = lines(panel, color=TYPE_COLOUR["BA"], marker="o", linestyle="--")
+    np.testing.assert_allclose(dashed.get_ydata(), here.groupby("a_eff")["cut_bound"].mean())
+    m = get_material("q-S")
+    contacts = np.exp(np.log(here["n_contacts"] * here["filling_factor"]).groupby(here["a_eff"]).mean())
+    (printed,) = lines(panel, color=GREY, marker="o")
+    args = (contacts.index.to_numpy(), m.surface_energy, m.density, 20e-9, contacts, 1.0)
+    np.testing.assert_allclose(printed.get_ydata(), eq33(*args, *TABLE_3["q-S", "BA"]))
+    # the markers are those of the grains that were spun up
+    (bars,) = [c for c in panel.containers if c[0].get_marker() == "o"]
+    expected = table[(table["material"] == "q-S") & (table["type"] == "BA")].groupby("a_eff")["omega_disr"].mean()
+    np.testing.assert_allclose(bars[0].get_ydata(), expected)
+    assert f"{len(grown)} grown grains" in words(figure7(table, grown=grown))
+    assert f"{len(table)} grown grains" in words(figure7(table))
+
+
+def test_the_legend_of_figure7_shows_the_marker_of_each_type_on_each_line():
+    (legend,) = figure7(make_table(sizes=SIZES, seeds=2)).legends
+    shown = [line for line in legend.findobj(Line2D) if line.get_marker() in TYPE_MARKER.values()]
+    filled = [line for line in shown if line.get_linestyle() == "None"]
+    printed = [line for line in shown if line.get_color() == GREY]
+    bound = [line for line in shown if line.get_linestyle() == "--"]
+    for one in (filled, printed, bound):
+        assert [line.get_marker() for line in one] == list(TYPE_MARKER.values())
 
 
 def test_figure7_goes_without_a_fit():
@@ -332,6 +415,45 @@ def test_figure8_says_where_it_scales_instead():
     assert nothing["T19"].isna().all() and np.isnan(anchor["T19"]) and nothing["absolute"].notna().all()
 
 
+def test_strengths_are_those_of_all_grown_grains_without_impossible_dimensions():
+    grown = make_table(("co-S", "q-S"), ("BAM2",), seeds=9)
+    impossible = (grown["seed"] < 4) & (grown["a_eff"] < 200e-9)
+    grown.loc[impossible, "fractal_dimension"] = 3.0 + 0.5 * grown["seed"]
+    table = grown[(grown["seed"] < 2) & (grown["material"] == "co-S")]
+    cells, material = cell_statistics(table), get_material("co-S")
+    curves, _ = predictions(cells, material, 300e-9, grown)
+    here = grown[grown["material"] == "co-S"]
+    size = here.groupby("a_eff")
+    phi, radius = size["filling_factor"].mean().to_numpy(), size["mean_monomer_radius"].mean().to_numpy()
+    dimension = here[here["fractal_dimension"] < 3].groupby("a_eff")["fractal_dimension"].median()
+    strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
+    np.testing.assert_allclose(curves["absolute"], 2 / cells["a_eff"] * np.sqrt(strength / material.density))
+    unit = curves["T19 fractal"] * cells["a_eff"] / phi ** (1 / (3 - dimension.reindex(cells["a_eff"]).to_numpy()))
+    assert unit.notna().sum() > 8
+    np.testing.assert_allclose(unit.dropna(), unit.dropna().iloc[0])
+    # a noisy mean of few grains may be near 3 and more: without the table of grown grains it stands as it is
+    alone, _ = predictions(cells, material, 300e-9)
+    assert alone["T19 fractal"].isna().sum() > curves["T19 fractal"].isna().sum()
+
+
+def test_figure8_draws_the_lines_of_the_grown_grains():
+    grown = make_table(("co-S",), ("BA", "BAM2"), seeds=6)
+    table = grown[grown["seed"] < 2]
+    panel = figure8(table, grown=grown).axes[0]
+    here, constants = (every[every["type"] == "BAM2"] for every in (table, grown)), get_material("co-S")
+    few, every = here
+    for drawn, rows in ((panel, every), (figure8(table).axes[0], few)):
+        curves, _ = predictions(cell_statistics(few), constants, 100e-9, rows)
+        (black,) = lines(drawn, color="#000000")
+        np.testing.assert_allclose(black.get_ydata(), curves["absolute"])
+    assert f"{len(every)} grown grains" in words(figure8(table, grown=grown))
+
+
+def test_figure10_has_the_materials_in_the_order_of_the_other_figures():
+    pairs = made_up_pairs(("q-S", "co-S", "a-C"), 3)
+    assert [axes.get_title() for axes in figure10(pairs).axes[:3]] == ["a-C", "q-S", "co-S"]
+
+
 @pytest.mark.parametrize(
     "values, expected",
     [([4.76e-16, 1e-17], -16), ([2e12], 12), ([500.0], 0), ([0.0, np.nan], 0), ([], 0), ([1e5], 5)],
@@ -362,6 +484,15 @@ def test_logarithmic_axes_have_room_and_numbers(values, expected, monkeypatch):
     low, high = axes.get_ylim()
     assert low < min(values) and high > max(values) and np.log10(high / low) >= 0.6 - 1e-9
     assert expected in [text.get_text() for text, _ in drawn_texts(figure, monkeypatch)]
+
+
+def test_half_a_decade_has_more_numbers(monkeypatch):
+    axes = (figure := Figure()).subplots()
+    axes.set_yscale("log")
+    axes.plot([2.6e8, 4.2e8], "o")
+    logarithmic(axes.yaxis, least=0.4)
+    texts = [text.get_text() for text, _ in drawn_texts(figure, monkeypatch)]
+    assert {rf"${digit}\times10^{{8}}$" for digit in (3, 4, 5)} <= set(texts)
 
 
 def test_settings_of_the_user_stay(tmp_path):

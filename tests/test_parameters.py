@@ -4,6 +4,7 @@ import logging
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from ratd import io
@@ -74,14 +75,29 @@ def test_the_table_can_be_written_and_read(table, tmp_path):
 
 
 def test_figure9_shows_a_line_a_value_and_the_effect_of_it(table):
-    above, right, below, _ = figure9(table).axes
+    larger = table.assign(a_eff=2 * table["a_eff"], omega_disr=table["omega_disr"] / 2)
+    above, right, below, _ = figure9(pd.concat([table, larger])).axes
     assert len(above.get_lines()) == len(right.get_lines()) == 2
     here = table[table["parameter"] == "xi_c"]
-    assert below.get_ylabel() and np.isclose(above.get_lines()[1].get_ydata(), here["omega_disr"].mean()).all()
+    mean = here["omega_disr"].mean()
+    np.testing.assert_allclose(above.get_lines()[1].get_ydata(), [mean, mean / 2])
+    assert "0.2 nm (paper)" in [text.get_text() for text in above.get_legend().texts]
+    assert "paper's value" in below.get_ylabel()
     drawn = np.concatenate([line.get_ydata() for line in below.get_lines()])
     assert np.isclose(drawn, here["omega_disr_ratio"].median()).any()
     with pytest.raises(InputError, match="at least one run"):
         figure9(table[:0])
+
+
+def test_figure9_of_one_size_has_no_axis_of_sizes(table):
+    figure = figure9(table)
+    assert [axes.get_xlabel().split()[0] for axes in figure.axes] == ["critical", "viscous"]
+    assert "50 nm" in figure.get_suptitle() and not any(axes.get_legend() for axes in figure.axes)
+    (legend,) = figure.legends
+    assert {"BAM2", "25 % of the mass lost"} < {text.get_text() for text in legend.texts}
+    # filled and open markers of one value stand side by side
+    places = [line.get_xdata()[0] for line in figure.axes[1].get_lines() if line.get_marker() == "^"]
+    assert len(places) == len(set(places)) == 2
 
 
 def test_a_run_ends_where_it_is_told_to():

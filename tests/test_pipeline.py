@@ -330,6 +330,10 @@ def test_the_document_is_redrawn_from_its_data_alone_with_the_same_bytes(copy_of
     shown = {f"reproduction/{name}" for name in re.findall(r"\(reproduction/(\w+\.png)\)", text)}
     pictures = (copy_of.folder / "docs" / "reproduction").glob("*.png")
     assert shown == {f"reproduction/{path.name}" for path in pictures}
+    # all grown grains count where something is said of them, and nowhere else
+    (copy_of.folder / "docs" / "reproduction" / "data" / "grown.nc").unlink()
+    figures = [f"docs/reproduction/figure{number}_prescribed.png" for number in (6, 7, 8)]
+    assert copy_of.planned(*figures) == {"redraw_figure": 2}
 
 
 def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
@@ -371,6 +375,17 @@ def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, sa
     assert sentence.startswith(f"config: {said}")
     assert len(remarks) == 2 and "rror" not in "".join(remarks)
     assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize(("fewer", "jobs"), [({"drives": ["literal"], "number": 2}, {"grown": 1}), ({"number": 2}, {})])
+def test_figures_show_all_grown_grains_if_these_are_grown_anyway(tmp_path, fewer, jobs):
+    """One drive of two leaves some out; where both do, no grain is grown for a figure."""
+    pipeline = Pipeline(tmp_path)
+    seeds = {"first": 0, "number": 4, "fewer": [fewer]}
+    pipeline.write_config(TINY | {"drives": ["prescribed", "literal"], "seeds": seeds, "block_size": 2})
+    planned = pipeline.planned("results/tiny/figures/figure7_literal.png", "results/tiny/figures/figure8_literal.png")
+    assert {rule: n for rule, n in planned.items() if rule == "grown"} == jobs
+    assert planned["grow"] == (4 if jobs else 2)
 
 
 def test_full_paper_is_planned(tmp_path):

@@ -96,7 +96,7 @@ def _predict_eq33(train, test, mark, materials):
         if name not in fit["material"].values or kind not in fit["type"].values:
             continue
         best = fit.sel(mean_radius=reading, material=name, type=kind)
-        material = get_material(name) if materials is None else get_material(name, materials)
+        material = get_material(name, materials)
         scale = (rows["a_eff"], material.surface_energy, material.density, radius_of_reading(reading))
         shape = (rows["n_contacts"], rows["filling_factor"], float(best["A"]), float(best["alpha"]))
         predicted[rows.index] = eq33(*scale, *shape)

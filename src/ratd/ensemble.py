@@ -303,7 +303,7 @@ def fit_ensemble(
         needed.append("mean_monomer_radius")
     usable = (table[needed].astype(float) > 0).all(axis=1) & np.isfinite(table[needed].astype(float)).all(axis=1)
     for i, material_name in enumerate(materials_here):
-        material = get_material(material_name) if materials is None else get_material(material_name, materials)
+        material = get_material(material_name, materials)
         for j, kind in enumerate(types_here):
             rows = table[usable & (table["material"] == material_name) & (table["type"] == kind)]
             size = size_key(rows["a_eff"]).to_numpy()

@@ -1,6 +1,15 @@
 # Figures of the paper, PDF for print and PNG for the screen.
 
 
+# What needs no spin-up is said of all grown grains where it costs nothing: where `seeds.fewer` leaves this drive fewer
+# of them than are grown anyway. Without `fewer`, the table of the drive has all.
+def grown_table(wildcards):
+    grains = "{material} {type} {size} {seeds}"
+    if PLAN.fewer and PLAN.files(grains) == PLAN.all_files(grains):
+        return rules.grown.output.table
+    return []
+
+
 rule figure1:
     input:
         PLAN.figure1_files(
@@ -220,6 +229,7 @@ rule figure7:
     input:
         table="<results>/ensemble/{drive}/grains.nc",
         fit="<results>/ensemble/{drive}/table3.nc",
+        grown=grown_table,
     output:
         pdf=report(
             "<results>/figures/figure7_{drive}.pdf",
@@ -254,7 +264,8 @@ rule figure7:
 
 rule figure8:
     input:
-        "<results>/ensemble/{drive}/grains.nc",
+        table="<results>/ensemble/{drive}/grains.nc",
+        grown=grown_table,
     output:
         pdf=report(
             "<results>/figures/figure8_{drive}.pdf",

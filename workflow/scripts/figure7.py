@@ -9,5 +9,6 @@ with Job(snakemake) as job:
     table = io.read_table(snakemake.input.table)
     fit = io.read_fit(snakemake.input.fit)
     materials = {name: Material(**constants) for name, constants in job.settings["materials"].items()}
-    figure = figure7(table, fit, drive=job.settings["drive"], materials=materials)
+    grown = io.read_table(snakemake.input.grown) if snakemake.input.grown else None
+    figure = figure7(table, fit, drive=job.settings["drive"], materials=materials, grown=grown)
     save(figure, *snakemake.output)

@@ -6,8 +6,9 @@ from ratd.jobs import Job
 from ratd.materials import Material
 
 with Job(snakemake) as job:
-    table = io.read_table(snakemake.input[0])
+    table = io.read_table(snakemake.input.table)
+    grown = io.read_table(snakemake.input.grown) if snakemake.input.grown else None
     settings = job.settings
     materials = {name: Material(**constants) for name, constants in settings["materials"].items()}
-    figure = figure8(table, settings["material"], settings["type"], settings["scaled_at"], settings["drive"], materials)
-    save(figure, *snakemake.output)
+    which = settings["material"], settings["type"], settings["scaled_at"], settings["drive"]
+    save(figure8(table, *which, materials, grown), *snakemake.output)

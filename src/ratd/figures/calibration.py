@@ -11,6 +11,8 @@ LOOK = {
     "omega_mass_99": {"color": "#D55E00", "marker": "s", "ms": 3.5},
     "omega_mass_75": {"color": "#009E73", "marker": "^", "mfc": "none", "ms": 4.5},
 }
+SPREAD = 1.035
+"""Factor between the places of runs with the same d omega/dt."""
 
 
 @styled
@@ -27,6 +29,7 @@ def calibration(table, fit):
     Returns
     -------
     matplotlib.figure.Figure
+        The marks of runs with the same d omega/dt stand side by side, in the order of grains and steps.
 
     Raises
     ------
@@ -36,36 +39,43 @@ def calibration(table, fit):
     if not len(table):
         raise InputError("calibration: give at least one run")
     first = table.iloc[0]
-    grains = plural(table["seed"].nunique(), "grain")
-    title = (
-        f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm, {grains}, drive: literal, "
-        "f = " + ", ".join(f"{f:g}" for f in sorted(table["timestep_factor"].unique()))
-    )
-    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, title)
+    runs = f"{plural(len(table), 'run')} of {plural(table['seed'].nunique(), 'grain')}"
+    steps = ", ".join(f"{f:g}" for f in sorted(table["timestep_factor"].unique()))
+    cell = f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm"
+    figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{cell}, {runs}\ndrive: literal, f = {steps}")
     axes = figure.subplots()
+    places = _side_by_side(table)
     for name, meaning in MARKS.items():
-        there = table[table[name].notna()]
-        axes.plot(there["printed_acceleration"], there[name], ls="none", label=meaning, **LOOK[name])
+        there = table[name].notna()
+        axes.plot(places[there], table.loc[there, name], ls="none", label=meaning, **LOOK[name])
     onset, exponent, calibrated = (float(fit[name]) for name in ("omega_onset", "exponent", "calibrated"))
     axes.axhline(onset, color=GREY, lw=0.8, ls="--", label="onset in Fig. 4 of the paper")
     if np.isfinite(calibrated):
         rates = table["printed_acceleration"]
         x = np.geomspace(min(calibrated, rates.min()), rates.max(), 50)
         axes.plot(x, onset * (x / calibrated) ** exponent, color=LOOK[ONSET]["color"], lw=0.8,
-                  label=rf"fit, $\dot\omega^{{{exponent:.2f}}}$")  # fmt: skip
+                  label=rf"fit, $(\mathrm{{d}}\omega/\mathrm{{d}}t)^{{{exponent:.2f}}}$")  # fmt: skip
         low, high = float(fit["calibrated_low"]), float(fit["calibrated_high"])
         error = [[calibrated - low], [high - calibrated]] if np.isfinite([low, high]).all() else None
         axes.errorbar(calibrated, onset, xerr=error, color="black", marker="D", ms=4, lw=0.8, capsize=2, ls="none",
-                      label=f"calibrated: {_power(calibrated)}")  # fmt: skip
+                      zorder=3, label=f"calibrated: {_power(calibrated)}")  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")
-    logarithmic(axes.xaxis)
-    logarithmic(axes.yaxis)
+    logarithmic(axes.xaxis, least=0.3)
+    logarithmic(axes.yaxis, least=0.4)
     scaled = "" if set(table["timestep_factor"]) == {PRINTED_STEP} else rf" \times\ {PRINTED_STEP:g}/f"
     axes.set_xlabel(rf"$\mathrm{{d}}\omega/\mathrm{{d}}t{scaled}$ [rad s$^{{-2}}$]")
     axes.set_ylabel(r"$\omega$ [rad s$^{-1}$]")
     figure.legend(loc="outside lower center", ncols=2)
     return figure
+
+
+def _side_by_side(table):
+    """d omega/dt of each run, moved a little so that those with the same one can be told apart."""
+    x = table["printed_acceleration"]
+    same = x.map("{:.6g}".format)
+    order = table.sort_values(["seed", "timestep_factor"]).groupby(same).cumcount()
+    return x * SPREAD ** (order - (same.map(same.value_counts()) - 1) / 2)
 
 
 def _power(value):

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
+from ratd.ensemble import sort_cells
 from ratd.errors import InputError
 from ratd.figures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, plural, styled
 
@@ -36,6 +37,7 @@ def figure10(table):
     Returns
     -------
     matplotlib.figure.Figure
+        The materials stand in the paper's order.
 
     Raises
     ------
@@ -49,7 +51,7 @@ def figure10(table):
     if not len(table):
         raise InputError("figure10: give at least one pair")
     table = table.assign(error=100 * relative_error(table))
-    names = list(dict.fromkeys(table["material"]))
+    names = list(sort_cells(table[["material"]].drop_duplicates())["material"])
     pairs = plural(table["monomer_radius"].nunique(), "pair")
     how = [
         rf"{start} $\epsilon$ = {part['epsilon'].iloc[0]:g}, f = {part['timestep_factor'].iloc[0]:g}"

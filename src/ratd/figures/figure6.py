@@ -41,7 +41,8 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     -------
     matplotlib.figure.Figure
         Dots: relaxed grain at rest; crosses: largest fragment at omega_disr. Above the diagonal, c/b > b/a, a grain
-        is rather prolate, below it rather oblate; each panel counts the oblate ones at the start and at disruption.
+        is rather prolate, below it rather oblate, which the corners name; each panel counts the oblate ones at the
+        start and at disruption.
 
     References
     ----------
@@ -73,20 +74,20 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
             lines += 1
 
     right, top = 1.1 * greatest
-    at = min(right / 1.4, top)  # where the two regions are named, on the diagonal
-    box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5}
+    # Strips without points: above all of them stand the counts, below 1, where no ratio is, a word.
+    top *= (top / 0.95) ** 0.5
+    bottom = top**-0.12
+    end = min(right, top)
     for axes in panels:
-        axes.plot([1, 1.08 * at], [1, 1.08 * at], color=GREY, lw=0.8, zorder=1)
-        # The strip above all points holds the counts.
-        axes.set(xscale="log", yscale="log", xlim=(0.95, right), ylim=(0.95, top * (top / 0.95) ** 0.5))
+        axes.plot([1, end], [1, end], color=GREY, lw=0.8, zorder=1)
+        axes.set(xscale="log", yscale="log", xlim=(0.95, right), ylim=(bottom, top))
         axes.set_xlabel("axis ratio $b/a$")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(FixedLocator([1, 1.2, 1.5, 2, 3, 5, 10, 20, 50]))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
-        named = {"textcoords": "offset points", "color": GREY, "bbox": box, "zorder": 2}
-        axes.annotate("prolate", (at, at), (-7, 0), **named, ha="right", va="bottom")
-        axes.annotate("oblate", (at, at), (7, 0), **named, ha="left", va="top")
+        axes.text(0.03, 0.97, "prolate", transform=axes.transAxes, color=GREY, va="top")
+        axes.text(0.97, 0.02, "oblate", transform=axes.transAxes, color=GREY, ha="right", va="bottom")
     panels[0].set_ylabel("axis ratio $c/b$")
     handles = []
     for kind, look in style.items():

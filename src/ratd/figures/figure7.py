@@ -1,6 +1,7 @@
 """Fig. 7: the angular velocity of disruption against size."""
 
 import numpy as np
+from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 
 from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_statistics, eq33, radius_of_reading
@@ -24,9 +25,13 @@ from ratd.figures.style import (
 )
 from ratd.materials import get_material
 
+BOUND = {"lw": 0.7, "ls": (0, (3, 2)), "ms": 2.8, "mfc": "white", "mew": 0.6}
+PRINTED = {"color": GREY, "lw": 0.8, "ms": 2.8, "mfc": "white", "mew": 0.6, "zorder": 1}
+"""Lines with open markers, which tell the types apart."""
+
 
 @styled
-def figure7(table, fit=None, drive=None, materials=None):
+def figure7(table, fit=None, drive=None, materials=None, grown=None):
     """omega_disr against size, a panel per material, with the fit of Eq. 33, the cut bound and Table 3 (Fig. 7).
 
     Parameters
@@ -39,12 +44,15 @@ def figure7(table, fit=None, drive=None, materials=None):
         Named in the title; default: what the table says.
     materials : optional
         Table of materials, handed to `ratd.materials.get_material`.
+    grown : pandas.DataFrame, optional
+        All grains as grown, also those that were not spun up, for what needs no spin-up; default: those of `table`.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Means as markers, minima to maxima as bars; fit as solid lines, mean cut bound as dashed lines, Eq. 33 with the
-        printed A and alpha (Table 3, <a_mon> = 20 nm) and this ensemble's N_con phi as grey lines.
+        Means as filled markers, minima to maxima as bars; fit as solid lines. Of the grown grains the mean cut bound as
+        dashed lines, and Eq. 33 with the printed A and alpha (Table 3, <a_mon> = 20 nm) and their N_con phi as grey
+        lines, both with open markers. The legend says how many these are.
 
     References
     ----------
@@ -52,11 +60,8 @@ def figure7(table, fit=None, drive=None, materials=None):
     """
     drive = drive_of(table) if drive is None else drive
     n = int(table["omega_disr"].notna().sum())
-    table = table.assign(
-        log_contacts=_log(table["n_contacts"] * table["filling_factor"]),
-        log_radius=_log(table["mean_monomer_radius"]),
-    )
-    cells = cell_statistics(table)
+    grown = table if grown is None else grown
+    cells, at_rest = _cells(table), _cells(grown)
     names = list(dict.fromkeys(cells["material"])) or [""]
     wide = len(names) > 1
     title = f"{plural(n, 'disrupted grain')}, {drive_text(drive)}"
@@ -75,31 +80,36 @@ def figure7(table, fit=None, drive=None, materials=None):
             cell = here[here["type"] == kind]
             if not len(cell):
                 continue
+            material = get_material(name, materials)
             x = nanometres(cell["a_eff"])
-            plain = {"color": look["color"], "lw": 1.0}
             mean_and_range(axes, x + nanometres(shifts[kind]), cell, "omega_disr", look)
-            axes.plot(
-                x,
-                cell["cut_bound_mean"],
-                **{**plain, "ls": (0, (3, 2)), "lw": 0.7},
-                marker="_" if len(cell) == 1 else None,
-            )
-            material = get_material(name) if materials is None else get_material(name, materials)
+            rest = at_rest[(at_rest["material"] == name) & (at_rest["type"] == kind)]
+            axes.plot(nanometres(rest["a_eff"]), rest["cut_bound_mean"], **look | BOUND)
             if fit is not None and name in fit["material"].values and kind in fit["type"].values:
                 reading = fit["mean_radius"].values[0]
                 best = fit.sel(mean_radius=reading, material=name, type=kind)
                 radius = radius_of_reading(reading) or np.exp(cell["log_radius_mean"])
                 line = _line(cell, material, radius, float(best["A"]), float(best["alpha"]))
-                axes.plot(x, line, **plain)
+                axes.plot(x, line, color=look["color"], lw=1.0)
             if (name, kind) in TABLE_3:
-                line = _line(cell, material, PAPER_MEAN_RADIUS, *TABLE_3[name, kind])
-                axes.plot(x, line, color=GREY, lw=0.8, marker=look["marker"], ms=2.5, mfc="white", mew=0.6, zorder=1)
+                line = _line(rest, material, PAPER_MEAN_RADIUS, *TABLE_3[name, kind])
+                axes.plot(nanometres(rest["a_eff"]), line, **look | PRINTED)
     logarithmic(panels[0].yaxis)
     panels[0].set_ylabel(r"$\omega_\mathrm{disr}$ [rad s$^{-1}$]")
     if len(cells):
         panels[0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
-    _legend(figure, style, 6 if wide else 2)
+    _legend(figure, style, len(grown), wide)
     return figure
+
+
+def _cells(table):
+    """Statistics per cell, with those of the logarithms that Eq. 33 needs."""
+    return cell_statistics(
+        table.assign(
+            log_contacts=_log(table["n_contacts"] * table["filling_factor"]),
+            log_radius=_log(table["mean_monomer_radius"]),
+        )
+    )
 
 
 def _log(values):
@@ -114,12 +124,21 @@ def _line(cell, material, radius, A, alpha):
     return eq33(cell["a_eff"], material.surface_energy, material.density, radius, contacts, 1.0, A, alpha)
 
 
-def _legend(figure, style, columns):
-    """One legend for all panels: types, then kinds of line."""
-    handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in style.items()]
-    handles += [
-        Line2D([], [], color="black", lw=1.0, label="fit of Eq. 33"),
-        Line2D([], [], color="black", lw=0.7, ls=(0, (3, 2)), label="cut bound (mean)"),
-        Line2D([], [], color=GREY, lw=0.8, marker="o", ms=2.5, mfc="white", mew=0.6, label="Table 3 as printed"),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+def _legend(figure, style, n_grown, wide):
+    """One legend for all panels: types, then kinds of line, those with markers once for each type."""
+
+    def each_type(line):
+        return tuple(Line2D([], [], **look | line) for look in style.values())
+
+    entries = {kind: Line2D([], [], ls="none", **look) for kind, look in style.items()}
+    entries["fit of Eq. 33"] = Line2D([], [], color="black", lw=1.0)
+    entries[f"mean cut bound of {plural(n_grown, 'grown grain')}"] = each_type(BOUND)
+    entries["Eq. 33 with Table 3 as printed"] = each_type(PRINTED)
+    figure.legend(
+        entries.values(),
+        entries.keys(),
+        handler_map={tuple: HandlerTuple(ndivide=None, pad=0.0)},
+        handlelength=4.5,
+        loc="outside lower center",
+        ncols=3 if wide else 1,
+    )

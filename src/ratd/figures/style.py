@@ -8,6 +8,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib import font_manager
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
 
@@ -31,7 +32,7 @@ _OTHER_COLOURS = ("#CC79A7", "#000000", "#56B4E9")
 _OTHER_MARKERS = ("D", "v", "P")
 
 RC = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine, see `own_fonts_first`
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
     "axes.labelsize": 8,
@@ -60,6 +61,20 @@ RC = {
     "svg.hashsalt": "ratd",
 }
 """matplotlib settings of every figure; texts are 7.5 points or larger at print width."""
+
+
+def own_fonts_first():
+    """Let the fonts that come with matplotlib win over fonts of the system that have the same name.
+
+    Which of them is found depends on the order in which the system lists its files, and their glyphs differ.
+    """
+    own = Path(matplotlib.get_data_path())
+    fonts = font_manager.fontManager
+    fonts.ttflist.sort(key=lambda font: not Path(font.fname).is_relative_to(own))
+    fonts.addfont(own / "fonts" / "ttf" / "DejaVuSans.ttf")  # forgets what was found before
+
+
+own_fonts_first()
 
 
 def styled(draw):
@@ -190,8 +205,8 @@ def logarithmic(axis, least=0.6):
     low, high = low - extra, high + extra
     set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
     set_limits(10**low, 10**high)
-    # Where fewer than two decades stand on the axis, 2 and 5 are labelled too.
-    labelled = (2, 5) if high - low < 2 else ()
+    # Where fewer than two decades stand on the axis, 2 and 5 are labelled too, and on half a decade still more.
+    labelled = () if high - low >= 2 else (2, 5) if high - low > 0.55 else (2, 3, 4, 5, 7)
     axis.set_major_locator(LogLocator(subs=(1,)))
     axis.set_minor_locator(LogLocator(subs=range(2, 10)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: _power_text(value)))
@@ -229,7 +244,25 @@ def mean_and_range(axes, x, cells, name, style, label=None):
     mean, low, high = (cells[f"{name}_{part}"].to_numpy(float) for part in ("mean", "minimum", "maximum"))
     there = np.isfinite(mean)
     x, mean, low, high = (np.asarray(values)[there] for values in (x, mean, low, high))
-    axes.errorbar(x, mean, [mean - low, high - mean], ls="none", elinewidth=0.8, capsize=1.5, label=label, **style)
+    bars = bar_lengths(mean, low, high)
+    axes.errorbar(x, mean, bars, ls="none", elinewidth=0.8, capsize=1.5, label=label, **style)
+
+
+def bar_lengths(middle, low, high):
+    """Lengths of error bars, never below zero.
+
+    Parameters
+    ----------
+    middle, low, high : array_like, shape (n,)
+
+    Returns
+    -------
+    numpy.ndarray, shape (2, n)
+        Below and above the middle.
+    """
+    middle = np.asarray(middle, dtype=float)
+    # the mean of equal values may differ from them by rounding, and matplotlib refuses negative lengths
+    return np.maximum([middle - low, high - middle], 0.0)
 
 
 def empty(axes, text="no grains"):

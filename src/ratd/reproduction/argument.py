@@ -29,12 +29,6 @@ INTRODUCTION = (
     "alone; the tensile strength of pulled aggregates; and LAMMPS, an independent code. The parts after these show "
     "what the printed equations do instead."
 )
-WAYS = {
-    lammps.COMPARISONS[0]: "set into rotation at once, inertial frame",
-    lammps.COMPARISONS[1]: "set into rotation at once, turning frame",
-    lammps.COMPARISONS[2]: "driven up, turning frame",
-}
-"""How the grains of `lammps.COMPARISONS` were made to turn, in words."""
 OF_DRIVE = {"omega_first_loss": "first loss", "omega_mass_75": "25 % of the mass", "omega_disr": "omega_disr"}
 """Marks that are set beside the bound."""
 
@@ -145,7 +139,7 @@ def lammps_section(data):
     ways = []
     for start, code in lammps.COMPARISONS:
         own = lammps_over_ratd([row for row in found if (row["start"], row["code"]) == (start, code)])
-        ways.append(f"{WAYS[start, code]}: {with_error(own['median'], own['error'])}")
+        ways.append(f"{lammps.START[start]}, {lammps.FRAME[code]}: {with_error(own['median'], own['error'])}")
     head = ["type", "size", "seed", "mark", "LAMMPS", "ratd", "cut bound", "Table 3", "LAMMPS/ratd", "Table 3/LAMMPS"]
     grains = table[table["study"] == "rotation"].drop_duplicates(["type", "a_eff", "seed"])
     counts = f"{int(grains['n_monomers'].min())} to {int(grains['n_monomers'].max())} monomers"

@@ -47,7 +47,7 @@ def table3_omega(table, materials=None):
     for (name, kind), rows in table.groupby(["material", "type"]):
         if (name, kind) not in TABLE_3:
             continue
-        material = get_material(name) if materials is None else get_material(name, materials)
+        material = get_material(name, materials)
         result[rows.index] = eq33(
             rows["a_eff"],
             material.surface_energy,
@@ -76,7 +76,7 @@ def strength_omega(table, materials=None):
     """
     result = pd.Series(np.nan, index=table.index)
     for name, rows in table.groupby("material"):
-        material = get_material(name) if materials is None else get_material(name, materials)
+        material = get_material(name, materials)
         phi = rows["filling_factor"].to_numpy(float)
         outer = rows["a_eff"].to_numpy(float) * phi ** (-1.0 / 3.0)
         radius = rows["mean_monomer_radius"].to_numpy(float)

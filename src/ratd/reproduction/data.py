@@ -38,6 +38,8 @@ DRIVEN_FIGURES = {
     9: {"table": PARAMETERS},
 }
 """Number of a figure that has a drive -> the data that it is drawn from, below the folder."""
+WITH_GROWN = (7, 8)
+"""Numbers of figures that tell of all grown grains too, where these are part of the data."""
 COMMON_FIGURES = {1: "figure1/*.nc", 2: GROWN, 10: "pairs/*.nc"}
 """Number of a figure without a drive -> pattern of its data."""
 
@@ -90,7 +92,7 @@ class Data:
         Returns
         -------
         dict of str to str or list of str
-            Name of an input -> path or paths.
+            Name of an input -> path or paths, of which there may be none.
         """
         if self.plan.config["figures"].get(f"figure{number}", ()) is None:
             return {}
@@ -98,7 +100,12 @@ class Data:
             paths = sorted(str(path) for path in Path(self.folder).glob(COMMON_FIGURES[number]))
             return {"data": paths} if paths else {}
         names = {key: name.format(drive=drive) for key, name in DRIVEN_FIGURES[number].items()}
-        return {key: self.path(name) for key, name in names.items()} if all(map(self.has, names.values())) else {}
+        if not all(map(self.has, names.values())):
+            return {}
+        files = {key: self.path(name) for key, name in names.items()}
+        if number in WITH_GROWN:
+            files["grown"] = self.path(GROWN) if self.has(GROWN) else []
+        return files
 
     @property
     def figures(self):

@@ -124,7 +124,7 @@ def _over_strengths(data, table, printed):
     if not len(here):
         return None
     cells = cell_statistics(here)
-    curves, anchor = predictions(cells, data.plan.materials[own["material"]], own["scaled_at_nm"] * NM)
+    curves, anchor = predictions(cells, data.plan.materials[own["material"]], own["scaled_at_nm"] * NM, data.grown)
     ratio = (cells["omega_disr_mean"] / curves.drop(columns="absolute").T).T.iloc[-1].dropna()
     if not len(ratio):
         return None

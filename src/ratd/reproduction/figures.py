@@ -1,12 +1,14 @@
 """Figures of the document that the paper does not have."""
 
 import numpy as np
+import pandas as pd
 from matplotlib.lines import Line2D
 
-from ratd.ensemble import size_key
+from ratd.ensemble import cell_of, size_key
 from ratd.figures.style import (
     GREY,
     TWO_COLUMNS,
+    bar_lengths,
     empty,
     logarithmic,
     nanometres,
@@ -18,6 +20,7 @@ from ratd.figures.style import (
 )
 from ratd.fragmentation import STAGES
 from ratd.reproduction.bounds import ratios
+from ratd.statistics import median_of, quantiles
 
 DRIVE_LOOK = {
     "prescribed": {"color": "#0072B2", "marker": "o"},
@@ -25,6 +28,14 @@ DRIVE_LOOK = {
 }
 PRINTED_LOOK = {"color": "black", "marker": "D"}
 STRENGTH_LOOK = {"color": GREY, "marker": "v"}
+SHARES = {
+    "the lost mass": {"lw": 1.3, "ms": 3.5},
+    "the number": {"lw": 0.7, "ls": (0, (4, 2)), "ms": 3.5, "mfc": "white", "mew": 0.7},
+}
+"""What a share is of, and its line."""
+LEAST = 0.02
+"""Part of all fragments that are smaller than what the axis begins with."""
+OMEGA_DISR = r"$\omega_\mathrm{disr}$"
 
 
 @styled
@@ -43,8 +54,8 @@ def bound(grown, tables, materials=None):
     Returns
     -------
     matplotlib.figure.Figure
-        Medians over all materials with the range of the middle two thirds: Eq. 33 with Table 3, the tensile strength,
-        and omega_disr of each drive.
+        Medians over all materials, each with the same weight, with the range of 68 %: Eq. 33 with Table 3, the tensile
+        strength, and omega_disr of each drive.
     """
     tables = {drive: ratios(table, materials) for drive, table in tables.items()}
     first = ratios(grown, materials)
@@ -74,14 +85,17 @@ def bound(grown, tables, materials=None):
 
 
 def _medians(axes, table, column, look):
-    """Medians of the sizes as a line, 16 % to 84 % as bars."""
+    """Medians of the sizes as a line, 16 % to 84 % as bars; the materials of a size have the same weight."""
     table = table[np.isfinite(table[column])]
     if not len(table):
         return
-    groups = table.groupby(size_key(table["a_eff"]))[column]
-    x = groups.median().index.to_numpy() * 1e-3
-    low, middle, high = (groups.quantile(q).to_numpy() for q in (0.16, 0.5, 0.84))
-    axes.errorbar(x, middle, [middle - low, high - middle], lw=0.8, elinewidth=0.6, capsize=1.2, ms=3.0, **look)
+    found = {
+        size * 1e-3: median_of(part[column], cell=cell_of(part))
+        for size, part in table.groupby(size_key(table["a_eff"]))
+    }
+    middle, low, high = np.array([[one[name] for name in ("median", "low", "high")] for one in found.values()]).T
+    bars = bar_lengths(middle, low, high)
+    axes.errorbar(list(found), middle, bars, lw=0.8, elinewidth=0.6, capsize=1.2, ms=3.0, **look)
 
 
 @styled
@@ -96,32 +110,41 @@ def fragments(tables):
     Returns
     -------
     matplotlib.figure.Figure
-        A solid line a type for the mass share, a dashed one for the share of the number of fragments.
+        A thick line with filled markers a type for the mass share, a thin dashed one with open markers for the share of
+        the number of fragments. The axis leaves out the smallest fragments, see `LEAST`.
     """
     figure = new_figure(TWO_COLUMNS, 0.75 * TWO_COLUMNS, "fragments that leave the largest one")
     panels = figure.subplots(len(STAGES), len(tables), sharex=True, sharey=True, squeeze=False)
     style = type_style([kind for table in tables.values() for kind in table["type"]])
     for row, (stage, text) in zip(panels, STAGES.items(), strict=True):
         for axes, (drive, table) in zip(row, tables.items(), strict=True):
-            axes.set_title(f"drive: {drive}, {text}")
-            chosen = table[table[stage]]
-            if not len(chosen):
-                empty(axes, "no fragments")
-            for kind, look in style.items():
-                part = chosen[chosen["type"] == kind].sort_values("mass_fraction")
-                x, of_grain = part["mass_fraction"].to_numpy(), part["weight"].to_numpy()
-                for weight, line in ((x * of_grain, "-"), (of_grain, "--")):
-                    share = np.cumsum(weight) / weight.sum() if len(x) else x
-                    axes.step(x, share, where="post", color=look["color"], ls=line, lw=1.0)
-            axes.set_xscale("log")
-            axes.set_ylim(0, 1.02)
+            axes.set_title(f"drive: {drive}, {text.replace('omega_disr', OMEGA_DISR)}")
+            _shares(axes, table[table[stage]], style)
+    every = pd.concat(list(tables.values()))
+    mass = every["mass_fraction"]
+    panels[0, 0].set(xscale="log", ylim=(0, 1.02))
+    if len(every):
+        panels[0, 0].set_xlim(quantiles(mass, LEAST, every["weight"]) / 1.3, 1.3 * mass.max())
     logarithmic(panels[0, 0].xaxis)
     for axes in panels[-1]:
         axes.set_xlabel("mass of the fragment over that of the grain")
     for axes in panels[:, 0]:
         axes.set_ylabel("share in smaller fragments")
-    handles = [Line2D([], [], color=look["color"], label=kind) for kind, look in style.items()]
-    handles += [Line2D([], [], color="black", label="of the lost mass")]
-    handles += [Line2D([], [], color="black", ls="--", label="of the number")]
+    handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in style.items()]
+    handles += [
+        Line2D([], [], color="black", marker="D", label=f"share of {what}", **look) for what, look in SHARES.items()
+    ]
     figure.legend(handles=handles, loc="outside lower center", ncols=5)
     return figure
+
+
+def _shares(axes, table, style):
+    """Mass and number of the fragments up to a size over those of all, a line a type and share."""
+    if not len(table):
+        empty(axes, "no fragments")
+    for kind, look in style.items():
+        part = table[table["type"] == kind].sort_values("mass_fraction")
+        x, of_grain = part["mass_fraction"].to_numpy(), part["weight"].to_numpy()
+        for weight, share in zip((x * of_grain, of_grain), SHARES.values(), strict=True):
+            y = np.cumsum(weight) / weight.sum() if len(x) else x
+            axes.step(x, y, where="post", markevery=0.12, **look | share)

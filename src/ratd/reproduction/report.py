@@ -8,6 +8,7 @@ from ratd.composition import tell
 from ratd.ensemble import radius_of_reading, size_key
 from ratd.markdown import markdown_table
 from ratd.reproduction import argument, disrupted, grown, open_questions
+from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.summary import summary
@@ -232,32 +233,31 @@ def _shapes(data, material, kind):
 
 
 def _argument(data, pictures):
-    there = set(data.further_figures)
-
-    def picture(name):
-        return [f"![{name}]({pictures}/{name}.png)"] if name in there else []
-
     return [
         "### What the contacts can hold",
         argument.bound_section(data),
-        *picture("bound"),
+        *_further(data, "bound", pictures),
         "### LAMMPS",
         argument.lammps_section(data),
-        *picture("lammps"),
+        *_further(data, "lammps", pictures),
         "### What the literal drive does",
         argument.literal_section(data),
-        *picture("literal"),
+        *_further(data, "literal", pictures),
         "### One free number of the literal drive",
         argument.calibration_section(data),
-        *picture("calibration"),
+        *_further(data, "calibration", pictures),
         "### Each printed formula alone",
         argument.formula_section(data),
-        *picture("formulae"),
+        *_further(data, "formulae", pictures),
     ]
 
 
+def _further(data, name, pictures):
+    """A figure that the paper does not have with its caption, where there are data for it; paragraphs."""
+    return [f"![{name}]({pictures}/{name}.png)", CAPTIONS[name]] if name in data.further_figures else []
+
+
 def _beyond(data, pictures):
-    fragments = [f"![fragments]({pictures}/fragments.png)"] if "fragments" in data.further_figures else []
     return [
         "### Eq. 33 or the cut bound?",
         open_questions.predictor_section(data),
@@ -265,7 +265,7 @@ def _beyond(data, pictures):
         open_questions.flattening_section(data),
         "### Sizes of the fragments",
         open_questions.fragment_section(data),
-        *fragments,
+        *_further(data, "fragments", pictures),
         "### Oblate or prolate",
         open_questions.shape_section(data),
         "A and alpha with their intervals stand under Table 3.",

@@ -12,6 +12,9 @@ GOAL = 0.15
 GRAIN = ["type", "a_eff", "seed"]
 FACE = dict(zip(MARKS, ("white", None), strict=True))
 """Open markers for the first loss, filled ones for 25 % of the mass."""
+START = {"sudden": "set into rotation at once", "driven": "driven up by an outer torque"}
+FRAME = {"LAMMPS": "LAMMPS in the inertial frame", TURNING: "LAMMPS in a frame that turns"}
+"""Titles of the panels."""
 
 
 def thresholds(table, column="mass_left"):
@@ -68,7 +71,7 @@ def draw(table):
     found = thresholds(table)
     for axes, (start, code) in zip(panels, COMPARISONS, strict=True):
         _draw_thresholds(axes, [row for row in found if (row["start"], row["code"]) == (start, code)])
-        axes.set_title(f"{start}; {code}")
+        axes.set_title(f"{START[start]}\n{FRAME[code]}")
         axes.set_xlabel(r"$\omega$ of parting, ratd [rad s$^{-1}$]")
         axes.set_ylabel(r"$\omega$ of parting, LAMMPS [rad s$^{-1}$]")
     shown = {}
@@ -91,7 +94,7 @@ def _draw_forces(axes, table):
     axes.axhline(0.0, color=GREY, lw=0.5)
     axes.set_xlabel(r"$\delta/\delta_0$")
     axes.set_ylabel(r"$F_\mathrm{N}/F_\mathrm{C}$")
-    axes.set_title("two spheres")
+    axes.set_title("two spheres that are drawn apart")
 
 
 def _draw_thresholds(axes, rows):

@@ -11,6 +11,7 @@ from ratd.validation.literal import EXACT_END, MARKS
 MARK = "omega_mass_75"
 LAW = 1 / 3
 """Exponent of omega in (d omega/dt)/dt that is looked for."""
+SCALE = r"$(\mathrm{d}\omega/\mathrm{d}t\,/\,\mathrm{d}t)^{1/3}$"
 
 
 def with_reference(table):
@@ -87,32 +88,35 @@ def draw(table):
         left.plot(here["scale"] / here[f"true_{MARK}"], here[MARK] / here["scale"], label=label, **look)
         here = part[part["coriolis"] == "exact"]
         right.plot(here[f"true_{MARK}"] / here["spin_share"], here[MARK], **look)
-    for number, (_, here) in enumerate(explicit.groupby("grain")):
+    for _, here in explicit.groupby("grain"):
         first = here.iloc[0]
         ratio = here["scale"] / here[f"true_{MARK}"]
         x = np.geomspace(ratio.min() / 1.1, ratio.max() * 1.1, 30)
         solid = [solid_omega(1.0 / value, first["spin_share"], 1.0, 1.0)[0] for value in x]
         look = dict(color=TYPE_COLOUR.get(first["type"], "black"), lw=0.6, zorder=0)
-        left.plot(x, solid, label=None if number else "solid grain", **look)
+        left.plot(x, solid, **look)
     if len(explicit):
+        left.plot([], [], color="black", lw=0.6, label="solid grain, in the colour of its type")
         left.axhline(explicit[MARK].div(explicit["scale"]).median(), color=GREY, lw=0.8, ls=":", label="exponent 1/3")
     x = np.concatenate([np.asarray(line.get_xdata(), dtype=float) for line in right.lines])
     x = x[np.isfinite(x)]
     if len(x):
         ends = np.array([x.min() / 1.3, x.max() * 1.3])
-        right.plot(ends, ends, color="black", lw=0.8)
+        right.plot(ends, ends, color="black", lw=0.8, ls="--", label="equal")
     for axes in (left, right):
         axes.set_xscale("log")
         logarithmic(axes.xaxis)
     right.set_yscale("log")
     logarithmic(right.yaxis)
     left.set_title("explicit Coriolis term")
-    left.set_xlabel(r"$(\dot\omega/\Delta t)^{1/3}$ over consistent $\omega$")
-    left.set_ylabel(r"$\omega$ at 25 % mass loss over $(\dot\omega/\Delta t)^{1/3}$")
+    left.set_xlabel(rf"{SCALE} over consistent $\omega$")
+    left.set_ylabel(rf"$\omega$ at 25 % mass loss over {SCALE}")
     right.set_title("exact Coriolis term")
     right.set_xlabel(r"consistent $\omega$ over $I_\mathrm{spin}/(I_\mathrm{orbit}+I_\mathrm{spin})$ [rad s$^{-1}$]")
     right.set_ylabel(r"$\omega$ at 25 % mass loss [rad s$^{-1}$]")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    shown = zip(left.get_legend_handles_labels(), right.get_legend_handles_labels(), strict=True)
+    handles, labels = (one + other for one, other in shown)
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
     return figure
 
 

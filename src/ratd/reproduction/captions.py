@@ -1,0 +1,69 @@
+"""Captions of the figures of the document that the paper does not have; those of the paper stand in workflow/report."""
+
+from ratd.reproduction.figures import LEAST
+
+CAPTIONS = {
+    "bound": (
+        "Angular velocities over the cut bound of the same grain, against size, a panel a type. Diamonds: Eq. 33 "
+        "with A and alpha as printed in Table 3; triangles: where the mean tension at the mid-plane is the tensile "
+        "strength of Tatsuuma et al. (2019); both are those of all grown grains. Circles and squares: omega_disr of "
+        "the grains that the drives prescribed and literal spun up. Each is a median over all materials, which have "
+        "the same weight; bars hold the middle 68 % of the grains. The dashed line is the cut bound itself.\n\n"
+        "What to see: which points keep near the dashed line, the omega that the contacts can hold, which lie far "
+        "above it, and how their distance grows with size."
+    ),
+    "lammps": (
+        "Top left: the normal force of two spheres that are drawn apart, over the pull-off force F_C, against their "
+        "compression over that in equilibrium. The line is ratd, for one pair, as all pairs lie on it; the dots are "
+        "LAMMPS, for all pairs. Other panels: the omega at which a grain parts in LAMMPS against that of the same "
+        "grain in ratd. It is set into rigid rotation at once and is free from then on, with LAMMPS in the inertial "
+        "frame or in one that turns with the grain, which is the same motion in other coordinates; or it is driven "
+        "up by an outer torque. Shape and colour tell the type. Open markers: first loss of mass; small filled "
+        "ones: loss of a quarter of the mass. Each omega lies between two that were tried, to which the bars reach "
+        "where they are longer than the marker. Line: equal in both codes; grey band: as near to it as the legend "
+        "says.\n\n"
+        "What to see: whether the markers keep to the line, so that two independent codes agree on what a grain "
+        "holds. The dots end before the line does: a contact of LAMMPS ends at the greatest pull."
+    ),
+    "literal": (
+        "The drive literal with two forms of its Coriolis term: the omega at which a quarter of the mass is lost. A "
+        "marker is a run; shape and colour tell the type, the face the size. Left, the Coriolis term at the "
+        "velocity half a step before: this omega over q = (d omega/dt / dt)^(1/3), against q over the omega of the "
+        "same mark in the consistent model. Solid lines: what a solid grain gives, one for each grain, in the "
+        "colour of its type. The dotted line is the median of the markers: all would lie on it if omega were "
+        "proportional to q, with the exponent 1/3 of d omega/dt. Right, the exact Coriolis term: this omega against "
+        "that of the consistent model over the share of the spins in the moment of inertia, at which a grain that "
+        "is turned by its spins alone would part. Dashed line: equal.\n\n"
+        "What to see: on the left, that the markers follow the lines of the solid grains, down to the right, and "
+        "not the dotted one; on the right, how far the markers scatter about the dashed line."
+    ),
+    "calibration": (
+        "Where the mass of grains of the cell of Fig. 4 starts to fall with the drive literal, against d omega/dt "
+        "at the printed step: open circles mark the first loss of mass, squares the loss of 1 %, triangles that of "
+        "25 %. A run with another step factor f than the printed one stands where d omega/dt over the step is the "
+        "same. Runs with one d omega/dt stand side by side, grain by grain. The solid line is a power law with one "
+        "exponent, fitted to the squares; the dashed line is the onset of mass loss in Fig. 4 of the paper. Where "
+        "they meet stands the diamond, the calibrated d omega/dt, with the bar of its standard error.\n\n"
+        "What to see: that the onset rises with d omega/dt, how nearly runs of one grain with two steps lie at the "
+        "same height, and whether the diamond lies within the range of the runs; outside it is extrapolated."
+    ),
+    "formulae": (
+        "The same grains spun up with one formula at a time as it is printed, named on the left, the rest being the "
+        "consistent model: omega_disr (left) and the omega of the loss of a quarter of the mass (right), over those "
+        "of the same grain in the consistent model. Markers are medians over the grains of a type, diamonds those "
+        "over all grains; bars are their standard errors, and where none is seen it is shorter than the marker. The "
+        "vertical line is 1, no change.\n\n"
+        "What to see: which markers leave the line by more than their bars, and how small the shifts are against "
+        "the factor between the print and the consistent model."
+    ),
+    "fragments": (
+        "Fragments that leave the largest one, by their mass over that of the grain: the share that lies in "
+        "fragments up to this mass. Thick lines with filled markers: share of the lost mass; thin dashed ones with "
+        "open markers: share of the number of fragments. The markers tell the types apart and stand at even "
+        "distances along the lines. A row a stage of the spin-up, a column a drive; all cells have the same weight. "
+        f"The axis leaves out the smallest fragments, {100 * LEAST:g} % of all.\n\n"
+        "What to see: where the thick lines rise, the size of the pieces that carry the mass away, and how far the "
+        "thin ones lie to their left: small fragments are many and hold little of the mass."
+    ),
+}
+"""Name of a figure -> what is drawn, and what to see; two paragraphs."""
