@@ -5,9 +5,12 @@ import pandas as pd
 
 from ratd.beyond import SPLIT
 from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
-from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, eq33
+from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, eq33, size_key
 from ratd.materials import get_material
 from ratd.units import NM
+
+PM = 1e-12
+"""Picometre [m], the unit of `ratd.ensemble.size_key`."""
 
 
 def split_sizes(table):
@@ -20,6 +23,12 @@ def sizes_of(table):
     """Sizes of a table of grains, such as "50–200 nm", or "350 nm"."""
     ends = dict.fromkeys(f"{end / NM:g}" for end in (table["a_eff"].min(), table["a_eff"].max()))
     return f"{'–'.join(ends)} nm"
+
+
+def shown_sizes(table):
+    """The smallest size, the one nearest to `ratd.beyond.SPLIT`, and the greatest, as `ratd.ensemble.size_key` [pm]."""
+    known = np.unique(size_key(table["a_eff"]))
+    return list(dict.fromkeys([known[0], known[np.argmin(np.abs(known - SPLIT / PM))], known[-1]]))
 
 
 def by_type_and_size(table):

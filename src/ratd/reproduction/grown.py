@@ -10,6 +10,7 @@ from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, cell_statistics, size_key
 from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
 from ratd.reproduction.argument import printed_porosity
+from ratd.reproduction.bounds import PM
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.text import (
     NOTHING,
@@ -87,8 +88,8 @@ def _fractal(table):
         f"open. {many} fits, of grains of few monomers, give more than {COMPACT:g}, which means nothing."
     )
     share = table["fractal_dimension"].notna().groupby(size_key(table["a_eff"])).mean()
-    from_size = share.index[share == 1].min() * 1e-12  # nothing where no size has it for all
-    changes = _changes(known, "fractal_dimension", from_size, lambda v: list(median_of(v).values())[:2])
+    from_size = share.index[share == 1].min() * PM  # nothing where no size has it for all
+    changes = _changes(known, "fractal_dimension", from_size, _median)
     holds = all_of(lies_in(*change, 0.0) for _, _, change in changes)
     return [
         Row("fractal_BA", {"": answer(fractal["median"], fractal["error"], PRINTED["fractal_BA"])}, reason),
@@ -105,11 +106,16 @@ def _changes(table, column, start, statistic):
     for kind, own in table.groupby("type", sort=False):
         sizes = size_key(own["a_eff"])
         known = np.unique(sizes)
-        ends = known[np.argmin(np.abs(known * 1e-12 - start))], known[-1]
+        ends = known[np.argmin(np.abs(known * PM - start))], known[-1]
         if np.isfinite(start) and ends[0] < ends[1]:
             first, last = (statistic(own.loc[sizes == end, column]) for end in ends)
-            found.append((kind, [end * 1e-12 / NM for end in ends], (last[0] - first[0], np.hypot(first[1], last[1]))))
+            found.append((kind, [end * PM / NM for end in ends], (last[0] - first[0], np.hypot(first[1], last[1]))))
     return found
+
+
+def _median(values):
+    found = median_of(values)
+    return found["median"], found["error"]
 
 
 def _told(changes):
@@ -121,7 +127,7 @@ def _before(table, kind):
     """Change of the mean porosity of a type from its smallest size to the one nearest to `SPLIT`."""
     own = table[table["type"] == kind]
     means = own["porosity"].groupby(size_key(own["a_eff"])).mean()
-    return means.iloc[np.argmin(np.abs(means.index * 1e-12 - SPLIT))] - means.iloc[0]
+    return means.iloc[np.argmin(np.abs(means.index * PM - SPLIT))] - means.iloc[0]
 
 
 def _step(data):

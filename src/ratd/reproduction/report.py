@@ -1,19 +1,16 @@
 """The text of docs/reproduction.md."""
 
-import numpy as np
-
-from ratd.beyond import SPLIT
 from ratd.calibration import PRINTED_STEP
 from ratd.composition import tell
-from ratd.ensemble import radius_of_reading, size_key
+from ratd.ensemble import size_key
 from ratd.markdown import markdown_table
 from ratd.reproduction import argument, disrupted, grown, open_questions
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.summary import summary
-from ratd.reproduction.text import interval, number, row_table
-from ratd.units import NM
+from ratd.reproduction.table3 import table3_section
+from ratd.reproduction.text import number, row_table
 
 INTRODUCTION = """# Reproduction of Reissl et al. (2024)
 
@@ -145,7 +142,7 @@ def _figures(data, pictures, captions):
     there = set(data.figures)
     for number_ in sorted({*COMMON_FIGURES, *DRIVEN_FIGURES}):
         if number_ == 8:
-            parts += ["### Table 3: A and alpha of Eq. 33", _table3(data)]
+            parts += ["### Table 3: A and alpha of Eq. 33", table3_section(data)]
         parts.append(f"### Fig. {number_}")
         names = [f"figure{number_}_{drive}" for drive in data.drives] if number_ in DRIVEN_FIGURES else []
         names = [name for name in [f"figure{number_}", *names] if name in there]
@@ -177,59 +174,6 @@ def _caption(text):
     """A caption of the report as Markdown, in one paragraph each."""
     text = text.replace(f", drive {CAPTION_DRIVE}", "").replace(f" (here {CAPTION_DRIVE})", "")
     return text.replace("``", "`").strip()
-
-
-def _table3(data):
-    """A and alpha beside print, a table a drive and reading of <a_mon>."""
-    parts = [
-        "Least squares of ln omega_disr over single grains, all sizes with the same weight; in brackets the bootstrap "
-        "interval. <a_mon> is read as the printed 20 nm and as the mean radius of each grain's own monomers: the "
-        "choice moves A, and hardly alpha. A is the value at N_con phi = 1, far from any grain, and moves against "
-        "alpha: what can be compared is Eq. 33 with the fitted numbers over Eq. 33 with the printed ones, given at "
-        f"{', '.join(f'{size / NM:g}' for size in _shown_sizes(data))} nm for the mean N_con phi there. Scatter: "
-        "standard deviation of ln omega_disr about the fit."
-    ]
-    for drive, fit in data.fits.items():
-        for reading in fit["mean_radius"].values:
-            rows, inside = [], 0
-            for material in fit["material"].values:
-                for kind in fit["type"].values:
-                    best = fit.sel(mean_radius=reading, material=material, type=kind)
-                    value = {name: float(best[name]) for name in best if best[name].dtype.kind == "f"}
-                    difference = value["alpha"] - value["alpha_printed"]
-                    cells = [str(material), str(kind)]
-                    for name in ("A", "alpha"):
-                        ends = (value[f"{name}{end}"] for end in ("", "_low", "_high"))
-                        cells += [number(value[f"{name}_printed"]), interval(*ends)]
-                    over = [
-                        number(value["A"] / value["A_printed"] * shape**difference)
-                        for shape in _shapes(data, material, kind)
-                    ]
-                    inside += value["alpha_low"] <= value["alpha_printed"] <= value["alpha_high"]
-                    rows.append([*cells, number(difference), " / ".join(over), number(value["scatter"]),
-                                 str(int(best["n_grains"]))])  # fmt: skip
-            radius = radius_of_reading(str(reading))
-            label = "own mean radius" if radius is None else f"{radius / NM:g} nm"
-            parts.append(f"Drive `{drive}`, <a_mon> = {label}:")
-            head = ["material", "type", "A printed", "A", "alpha printed", "alpha", "less the printed"]
-            parts.append(markdown_table([*head, "Eq. 33 over print", "scatter", "grains"], rows))
-            parts.append(f"The interval of alpha holds the printed value in {inside} of {len(rows)} cases.")
-        if fit.attrs["missing_fits"]:
-            parts.append(f"No fit: {fit.attrs['missing_fits']}.")
-    return "\n\n".join(parts)
-
-
-def _shown_sizes(data):
-    """The smallest size, the one nearest to `SPLIT`, and the greatest of the grown grains [m], list."""
-    known = np.unique(size_key(data.grown["a_eff"])) * 1e-12
-    return list(dict.fromkeys([known[0], known[np.argmin(np.abs(known - SPLIT))], known[-1]]))
-
-
-def _shapes(data, material, kind):
-    """Geometric mean of N_con phi of the grown grains of a material and type, at each of `_shown_sizes`."""
-    own = data.grown[(data.grown["material"] == material) & (data.grown["type"] == kind)]
-    shape = np.log(own["n_contacts"] * own["filling_factor"]).groupby(size_key(own["a_eff"])).mean()
-    return [np.exp(shape.get(round(size / 1e-12), np.nan)) for size in _shown_sizes(data)]
 
 
 def _argument(data, pictures):

@@ -9,7 +9,7 @@ from ratd.figures.style import plural
 from ratd.markdown import markdown_table
 from ratd.reproduction import grown
 from ratd.reproduction.argument import calibrated_grains, is_calibrated, lammps_over_ratd, printed_rate
-from ratd.reproduction.bounds import ratios, table3_omega
+from ratd.reproduction.bounds import PM, ratios, shown_sizes, table3_omega
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.text import NOTHING, between, number, with_error
@@ -99,9 +99,7 @@ def _level(name, table):
         return median_of(1 / part["printed_over_found"], cell=cell_of(part))
 
     found = over(table)
-    sizes = size_key(table["a_eff"])
-    known = np.unique(sizes)
-    shown = dict.fromkeys([known[0], known[np.argmin(np.abs(known * 1e-12 - SPLIT))], known[-1]])
+    sizes, shown = size_key(table["a_eff"]), shown_sizes(table)
     by_type = [
         f"{kind} {' → '.join(number(over(part[sizes[part.index] == size])['median']) for size in shown)}"
         for kind, part in table.groupby("type", sort=False)
@@ -109,7 +107,7 @@ def _level(name, table):
     return (
         f"**{name}**: omega_disr is {with_error(found['median'], found['error'])} times Eq. 33 with the printed Table "
         f"3 in the median of {plural(found['n'], 'grain')} (middle two thirds {between(found['low'], found['high'])}), "
-        f"and at {', '.join(f'{size * 1e-12 / NM:g}' for size in shown)} nm {', '.join(by_type)}."
+        f"and at {', '.join(f'{size * PM / NM:g}' for size in shown)} nm {', '.join(by_type)}."
     )
 
 
