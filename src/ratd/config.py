@@ -468,6 +468,12 @@ class Plan:
         """Files of the grown grains of all cells with all seeds, see `files`; `seeds.fewer` leaves none out."""
         return [self.file(path, cell, seeds=block) for cell in self.cells for block in self._split(self.seeds, cell)]
 
+    @property
+    def grows_more_anyway(self):
+        """Whether all grains are grown for one drive or another, and `seeds.fewer` leaves some out for a drive."""
+        grains = "{material} {type} {size} {seeds}"
+        return bool(self.fewer) and self.files(grains) == self.all_files(grains)
+
     def grown_files(self, path, drive):
         """Files of the grown grains that a drive spins up, see `files`; they may hold more seeds than it wants."""
         return [

@@ -1,13 +1,6 @@
 # Figures of the paper, PDF for print and PNG for the screen.
-
-
-# What needs no spin-up is said of all grown grains where it costs nothing: where `seeds.fewer` leaves this drive fewer
-# of them than are grown anyway. Without `fewer`, the table of the drive has all.
-def grown_table(wildcards):
-    grains = "{material} {type} {size} {seeds}"
-    if PLAN.fewer and PLAN.files(grains) == PLAN.all_files(grains):
-        return rules.grown.output.table
-    return []
+#
+# What needs no spin-up is said of all grown grains where no grain is grown for that alone (`grown` of figures 7 and 8).
 
 
 rule figure1:
@@ -229,7 +222,7 @@ rule figure7:
     input:
         table="<results>/ensemble/{drive}/grains.nc",
         fit="<results>/ensemble/{drive}/table3.nc",
-        grown=grown_table,
+        grown=[rules.grown.output.table] if PLAN.grows_more_anyway else [],
     output:
         pdf=report(
             "<results>/figures/figure7_{drive}.pdf",
@@ -265,7 +258,7 @@ rule figure7:
 rule figure8:
     input:
         table="<results>/ensemble/{drive}/grains.nc",
-        grown=grown_table,
+        grown=[rules.grown.output.table] if PLAN.grows_more_anyway else [],
     output:
         pdf=report(
             "<results>/figures/figure8_{drive}.pdf",
