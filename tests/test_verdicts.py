@@ -132,7 +132,7 @@ def test_sizes_with_more_grains_do_not_decide_which_shape_most_have(data):
     small = table["a_eff"] < 2.5e-7
     data.__dict__["tables"] = {"prescribed": table.assign(**axes(np.where(small, 1.2, 2.0), np.where(small, 2.0, 1.2)))}
     row = next(row for row in disrupted.rows(data) if row.key == "oblate_disr").answers["prescribed"]
-    assert row.text.startswith("0.5 (6 of 36") and row.holds is True
+    assert row.text.startswith("0.5 (raw count 6 of 36") and row.holds is True
 
 
 OF_GROWN = [

@@ -49,9 +49,10 @@ def bound_section(data):
         "Cut the contacts of a grain along any surface. The part cut off, of mass M with its centre of mass at the "
         "distance r from the axis, needs the force M omega² r to stay on its circle, and each contact of the cut pulls "
         "with at most F_C along the line of its centres. Above the omega at which the weakest cut gives way the grain, "
-        "as it stands, cannot turn as a whole. This needs no simulation. It is exact for trees, i.e. BA grains without "
-        "chance contacts, and otherwise the least over the bridges and planes that were tried. New contacts, made "
-        "while a grain deforms, may raise it; it is compared, not enforced.",
+        "as it stands, cannot turn as a whole. This needs no simulation. For trees, i.e. BA without chance contacts, "
+        "the weakest cut is found exactly; otherwise it is the weakest of the bridges and planes that were tried, and "
+        "the true one can only be weaker. New contacts, made while a grain deforms, may raise the bound; it is "
+        "compared, not enforced.",
         f"What a contact holds sideways before it slides is left out, {number(low)} to {number(high)} F_C for equal "
         "monomers of the ensemble: a load sideways rolls the monomers, which takes far less, until it pulls.",
         f"Eq. 33 with the printed Table 3 lies above the bound for {int((known > 1).sum())} of {len(known)} grains; "
@@ -60,7 +61,7 @@ def bound_section(data):
         "middle two thirds, each over the cut bound of the same grain. The tensile strength is 0.951 gamma/a phi^1.8 "
         "(Tatsuuma et al. 2019, from pulled aggregates) set against the mean tension in the mid-plane of a turning "
         "sphere.",
-        markdown_table(["type", "sizes", "grains", "Table 3", "the load of it", "tensile strength"], rows),
+        markdown_table(["type", "sizes", "grains", "Table 3", "its load on the weakest cut", "tensile strength"], rows),
         "Where the spun-up grains come apart, over the bound of the same grain:",
     ]
     rows = []
@@ -108,8 +109,8 @@ def _above_bound(data):
     return [
         "In the drive `prescribed` the first mass leaves below the bound, above it in "
         f"{', '.join(above)} grains, which deform before they part. omega_disr is the peak of the stress of the "
-        "largest fragment: where little of the mass is left then, as in large BA grains, it belongs to a remnant, and "
-        "may lie above the bound of the whole grain."
+        "largest fragment: where part of the mass has left by then, as in large BA grains, it belongs to a remnant, "
+        "and may lie above the bound of the whole grain."
     ]
 
 
@@ -211,7 +212,7 @@ def calibration_section(data):
                 "runs with a longer step and a d omega/dt that is as much greater, which are far cheaper, stand for "
                 f"it: in {plural(len(pairs), 'pair')} of runs of the same grain the onset with f = {longer} lies at "
                 f"{with_error(own['median'], own['error'])} times that with f = {shorter} "
-                f"({between(pairs['ratio'].min(), pairs['ratio'].max())})."
+                f"({between(pairs['ratio'].min(), pairs['ratio'].max())} from least to greatest)."
             )
     parts += [*_shorter_step(data), *solid_parts(data)]
     if "literal" in data.tables:
@@ -235,7 +236,8 @@ def calibration_section(data):
         parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
         parts.append(
             "The level follows from the one number that was fixed. What tests the drive is how omega_disr goes with "
-            "size, material and type (In short)."
+            "type and size: the order of the types is in the table, the fall with size under Does omega_disr flatten "
+            "with size?, beside that of Eq. 33 with Table 3."
         )
     return "\n\n".join(parts)
 
@@ -431,7 +433,7 @@ def formula_section(data):
         parts.append(
             "Not tried alone are misprints without which nothing runs as it should, or that change no number: the "
             "signs of Eqs. 14 and 17, which would make the springs push apart or measure rolling, and the terms of the "
-            "spins that Eq. 30 lacks, which are what the drive `literal` does (docs/model.md lists all of them)."
+            "spins that Eq. 30 lacks, whose effect the drive `literal` shows (docs/model.md lists all of them)."
         )
     rows = []
     for kind, part in data.grown.groupby("type", sort=False):

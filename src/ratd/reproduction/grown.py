@@ -57,8 +57,8 @@ def rows(data):
 def _porosity(table):
     cells = cell_statistics(table, by=("type", "a_eff"))
     reason = (
-        f"With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a solid sphere P = {printed_porosity(0.0):.2f}. Single "
-        "grains spread, small ones most."
+        f"Means of the sizes, the least one of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a "
+        f"solid sphere P = {printed_porosity(0.0):.2f}."
     )
     result = []
     for kind in dict.fromkeys(table["type"]):
@@ -67,9 +67,9 @@ def _porosity(table):
         for key in (f"porosity_{kind}", f"porosity_{kind}_text"):
             if key in PRINTED:
                 low, high = PRINTED[key].value
-                means = f" (means of the sizes {between(least, greatest)})"
+                single = f" (single grains {between(own['porosity'].min(), own['porosity'].max())})"
                 inside = bool(0.9 * low < least and greatest < 1.1 * high)
-                found = range_answer(own["porosity"].min(), own["porosity"].max(), PRINTED[key], inside, means)
+                found = range_answer(least, greatest, PRINTED[key], inside, single)
                 result.append(Row(key, {"": found}, reason))
     changes = _changes(table, "porosity", SPLIT, mean_of)
     holds = all_of(lies_in(*change, -STAGNATES, STAGNATES) for _, _, change in changes)

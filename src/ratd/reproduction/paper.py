@@ -206,7 +206,7 @@ _SPUN_UP = {
         "Sect. 7.5, Fig. 9",
         "omega at T_vis = 9 ps over that at 5 ps, a-C BAM2",
         "1.11",
-        "all within half of the rise",
+        "1.055–1.165, half of the rise either way",
         1.11,
         setting=9e-12,
     ),

@@ -24,15 +24,16 @@ Numbers and figures were written by
 
 from the files in `docs/reproduction/data`, where a README says how these were made; no number but the printed ones and
 the rules of “holds if” was typed by hand. "±" is a standard error; that of a median over several cells takes in the
-differences between them, and is an upper limit. A range in brackets behind a value is its {confidence:g} % interval
-unless the text says otherwise. Angular velocities are in rad/s.
+differences between them, and is an upper limit. A range in brackets behind a value is the middle two thirds of the
+grains, and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 
 - `prescribed`, the consistent model: an outer torque, which the radiation supplies, makes the grain turn with omega(t).
 - `literal`, the equations as printed (Eqs. 29 and 30): inertial forces of a turning frame, no outer torque. A grain
   that obeys them exactly does not turn in the inertial frame but for the terms that Eq. 30 leaves out, see
-  `docs/model.md`.
+  `docs/model.md`. Unless “exact” is said, the Coriolis force is taken at the velocity half a step before (“explicit”):
+  this lag, which grows with the step, turns a grain backwards and is what tears it. How the paper takes it is not said.
 
 What the printed equations do is shown here. What the authors' code did is not known: it may differ from the print.
 
@@ -45,11 +46,15 @@ What the printed equations do is shown here. What the authors' code did is not k
   means b/a > c/b. phi: filling factor. P = 1 - phi: porosity.
 - omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks. Other marks are the
   first loss of mass, and the loss of a quarter of it.
-- Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3.
+- Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3;
+  N_con is the number of contacts and <a_mon> the mean radius of the monomers. With the printed Table 3 it is taken at
+  the printed <a_mon> = 20 nm; with that of our grains, which is greater, it would be lower (Table 3).
 - F_C: the greatest pull of a contact. Cut bound, or the bound: the omega above which the weakest cut through the
   contacts of a grain, each holding F_C, gives way (What the contacts can hold).
 - dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}.
-- d omega/dt: how fast the drive `literal` raises omega, which the paper does not give. Its runs have {rate}.
+- d omega/dt: how fast the drive `literal` raises omega, which the paper does not give. The runs of the ensemble have
+  {rate}; other runs name theirs.
+- xi_c: how far a contact rolls before it gives way; T_vis: viscous time of the damping. The cell of Fig. 4: {cell}.
 - A solid grain: one that turns as a rigid body, until it parts where the consistent model says."""
 
 CAPTION_DRIVE = "``{{ snakemake.wildcards.drive }}``"
@@ -81,8 +86,11 @@ def report(data, pictures, captions=None):
         "## The printed numbers",
         "One row for each number or finding that the paper quotes; Tables 1, 2 and 3 and Fig. 1 have tables of their "
         "own below. “ratio” is ours over printed, of both ends for a range. “holds” says whether ours fulfils the rule "
-        "under “holds if”, by two errors; a dash, that the data do not decide it. Left out are Fig. 3, a sketch, and "
-        "what the paper says of its own runs (their energy error, number of steps, and drag time) or of other work.",
+        "under “holds if”: within a quarter is a factor of 1.25 either way, to a tenth is 10 % beyond either end. "
+        "Where an error is given, yes and no need two errors; values without one (extremes, ranges, the cell of Fig. "
+        "4) are compared as they stand. A dash: not decided, no rule, or used to fix the drive. Left out are Fig. 3, a "
+        "sketch, and what the paper says of its own runs (their energy error, number of steps, and drag time) or of "
+        "other work.",
         *_printed_numbers(rows, drives),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
@@ -102,8 +110,14 @@ def _introduction(data):
     return INTRODUCTION.format(
         confidence=100 * config["ensemble"]["confidence"],
         step=PRINTED_STEP,
+        cell=_cell_of_figure4(config),
         rate=own if rate is None else f"{own}, which stands for {number(rate)} rad/s² at the printed step",
     )
+
+
+def _cell_of_figure4(config):
+    own = config["figures"]["figure4"]
+    return f"{own['material']} {own['type']} {own['size_nm']:g} nm" if own else "none"
 
 
 def _printed_numbers(rows, drives):
@@ -212,5 +226,4 @@ def _beyond(data, pictures):
         *_further(data, "fragments", pictures),
         "### Oblate or prolate",
         open_questions.shape_section(data),
-        "A and alpha with their intervals stand under Table 3.",
     ]

@@ -28,7 +28,7 @@ def rows(data):
         drive_rows("b_over_a", tables, _flattest, EARLY),
         drive_rows("b_over_a_BA", tables, _less_flat, "Arms of BA grains swing out and stretch before they part."),
         drive_rows("porosity_change_BA", tables, _loosened(("BA",), -np.inf, 0.0)),
-        drive_rows("porosity_change_BAM", tables, _loosened(BAM, 0.0, np.inf), EARLY),
+        drive_rows("porosity_change_BAM", tables, _loosened(BAM, 0.0, np.inf)),
     ]
 
 
@@ -48,7 +48,7 @@ def _oblate(when, low, high, size=None, types=None):
             return None
         by = "type" if types == BAM else "material"
         parts = ", ".join(f"{name} {oblate_share(part, when)[2]}" for name, part in table.groupby(by, sort=False))
-        text = f"{with_error(share, error)} ({n_oblate} of {n}: {parts})"
+        text = f"{with_error(share, error)} (raw count {n_oblate} of {n}: {parts})"
         if when == "disr" and table["a_eff"].nunique() > 1:
             sides = [(sizes_of(part), oblate_share(part, when)) for part in split_sizes(table)]
             text += "; " + ", ".join(f"{sizes} {with_error(*own[:2])}" for sizes, own in sides)

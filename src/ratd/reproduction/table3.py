@@ -29,7 +29,7 @@ def table3_section(data):
             radius = radius_of_reading(str(reading))
             label = "own mean radius" if radius is None else f"{radius / NM:g} nm"
             parts.append(f"Drive `{drive}`, <a_mon> = {label}:")
-            head = ["material", "type", "A printed", "A", "alpha printed", "alpha", "less the printed"]
+            head = ["material", "type", "A printed", "A", "alpha printed", "alpha", "alpha less printed"]
             parts.append(markdown_table([*head, "Eq. 33 over print", "scatter", "grains"], rows))
             parts.append(f"The interval of alpha holds the printed value in {inside} of {len(rows)} cases.")
         if fit.attrs["missing_fits"]:

@@ -40,8 +40,8 @@ def with_error(value, error):
 
 
 def between(low, high):
-    """A range, such as "0.4–0.85"."""
-    return f"{number(low)}–{number(high)}"
+    """A range, such as "0.4–0.85", or "-0.4 to -0.1"."""
+    return f"{number(low)}{' to ' if min(low, high) < 0 else '–'}{number(high)}"
 
 
 def interval(value, low, high):
