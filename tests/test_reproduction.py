@@ -192,11 +192,11 @@ def test_studies_are_told_from_their_columns(folder):
     runs |= {"omega_mass_99": [9.0e8, 9.9e8, 3e8]}
     data.__dict__["calibration"] = xr.Dataset(values | {name: ("entry", column) for name, column in runs.items()})
     text = report(data, "reproduction")
-    row = next(line for line in text.splitlines() if "T_vis = 9 ps over" in line)
+    row = next(line for line in text.splitlines() if "| omega at T_vis = 9 ps over" in line)
     assert "1.120 ± " in row and "| yes |" in row
     # an error that allows both the printed effect and none leaves it open
     grains["omega_disr_ratio"] = [1.0, 0.9, 1.05, 1.2]
-    open_row = next(line for line in report(data, "reproduction").splitlines() if "T_vis = 9 ps over" in line)
+    open_row = next(line for line in report(data, "reproduction").splitlines() if "| omega at T_vis = 9 ps over" in line)
     assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
     assert f"| {FORMULAE['damping']} | BA | 0.600 ± 0.0" in text and "| 0.8 | 3 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs of 1 grain" in text
@@ -238,7 +238,7 @@ def test_what_a_drive_was_fixed_on_decides_nothing(folder):
         ends = {"calibrated_low": low, "calibrated_high": 2.1e13}
         data.__dict__["calibration"] = xr.Dataset(values | ends | runs)
         lines = report(data, "reproduction").splitlines()
-        row = next(line for line in lines if "mass constant up to" in line)
+        row = next(line for line in lines if "| mass constant up to" in line)
         assert ("(fixed on this)" in row) == (fixed and "literal" in data.tables)
         assert not fixed or "literal" not in data.tables or row.split(" | ")[9] == "–"
 
