@@ -69,17 +69,17 @@ def _verdicts(rows, drives):
             words = f"{found.count(True)} seen here, {found.count(False)} not, {found.count(None)} left open"
             counts.append(f"drive `{key}` {words}" if key else words)
         lines.append(f"**{len(part)} printed values and findings on {what}**: {'; '.join(counts)}.")
-    none = [
-        f"{row.printed.what} ({row.printed.text})"
-        for row in rows
-        if row.printed.about == "spin-up" and row.answers and all(own.holds is False for own in row.answers.values())
-    ]
-    if none and len(drives) > 1:
-        lines.append(f"**Seen in neither drive**: {'; '.join(none)}.")
+    own = [row for row in rows if row.printed.about == "spin-up" and row.answers]
+
+    def named(chosen):
+        return "; ".join(f"{row.printed.what} ({row.printed.text})" for row in chosen) or "none"
+
+    if len(drives) > 1:
+        none = [row for row in own if all(answer.holds is False for answer in row.answers.values())]
+        lines.append(f"**Seen in neither drive**: {named(none)}.")
     for drive in drives:
-        seen = [row.printed.what for row in rows if row.printed.about == "spin-up"
-                and drive in row.answers and row.answers[drive].holds]  # fmt: skip
-        lines.append(f"**Seen with the drive `{drive}`**: {'; '.join(seen) or 'none'}.")
+        seen = [row for row in own if drive in row.answers and row.answers[drive].holds]
+        lines.append(f"**Seen with the drive `{drive}`**: {named(seen)}.")
     return lines
 
 
