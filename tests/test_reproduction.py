@@ -19,10 +19,11 @@ from ratd.formula_table import FORMULAE
 from ratd.growth import grow
 from ratd.materials import MATERIALS
 from ratd.reproduction import figures
-from ratd.reproduction.argument import printed_porosity, solid_parts, solid_prediction
+from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import ratios
 from ratd.reproduction.data import GROWN, Data
 from ratd.reproduction.paper import GRAINS, PRINTED
+from ratd.reproduction.rate import solid_parts, solid_prediction
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
 from ratd.shape import porosity, semi_axes
@@ -196,7 +197,9 @@ def test_studies_are_told_from_their_columns(folder):
     assert "1.120 ± " in row and "| yes |" in row
     # an error that allows both the printed effect and none leaves it open
     grains["omega_disr_ratio"] = [1.0, 0.9, 1.05, 1.2]
-    open_row = next(line for line in report(data, "reproduction").splitlines() if "| omega at T_vis = 9 ps over" in line)
+    open_row = next(
+        line for line in report(data, "reproduction").splitlines() if "| omega at T_vis = 9 ps over" in line
+    )
     assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
     assert f"| {FORMULAE['damping']} | BA | 0.600 ± 0.0" in text and "| 0.8 | 3 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs of 1 grain" in text

@@ -5,8 +5,10 @@ import pandas as pd
 
 from ratd.beyond import SPLIT
 from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
-from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, eq33, size_key
+from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_of, eq33, size_key
 from ratd.materials import get_material
+from ratd.reproduction.text import NOTHING, number
+from ratd.statistics import median_of
 from ratd.units import NM
 
 PM = 1e-12
@@ -116,3 +118,14 @@ def ratios(table, materials=None):
         found_over_bound=table["omega_disr"] / table["cut_bound"],
         printed_over_found=table3_omega(table, materials) / table["omega_disr"],
     )
+
+
+def median_and_range(table, values):
+    """Median of values of the grains of a table, and range of the middle two thirds, text; all cells count alike."""
+    found = median_of(values, cell=cell_of(table))
+    return f"{number(found['median'])} ({number(found['low'])}–{number(found['high'])})" if found["n"] else NOTHING
+
+
+def whole_nm(table):
+    """Sizes of the grains of a table in whole nm, array of int."""
+    return np.rint(table["a_eff"] / NM).astype(int)

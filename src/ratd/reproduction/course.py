@@ -5,8 +5,8 @@ import numpy as np
 from ratd.calibration import onset
 from ratd.ensemble import cell_of
 from ratd.marks import disruption
-from ratd.reproduction.argument import is_calibrated
 from ratd.reproduction.bounds import by_type_and_size
+from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
     NOTHING,
     ROUGHLY,

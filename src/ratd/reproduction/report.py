@@ -4,7 +4,7 @@ from ratd.calibration import PRINTED_STEP
 from ratd.composition import tell
 from ratd.ensemble import size_key
 from ratd.markdown import markdown_table
-from ratd.reproduction import argument, disrupted, grown, open_questions
+from ratd.reproduction import argument, disrupted, grown, open_questions, rate
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
@@ -104,14 +104,14 @@ def report(data, pictures, captions=None):
 
 
 def _introduction(data):
-    config, rate = data.plan.config, argument.printed_rate(data)
+    config, printed = data.plan.config, rate.printed_rate(data)
     law = data.plan.spin_up_of("literal")
     own = f"{data.plan.pace('literal')} and f = {law['timestep_factor']:g}"
     return INTRODUCTION.format(
         confidence=100 * config["ensemble"]["confidence"],
         step=PRINTED_STEP,
         cell=_cell_of_figure4(config),
-        rate=own if rate is None else f"{own}, which stands for {number(rate)} rad/s² at the printed step",
+        rate=own if printed is None else f"{own}, which stands for {number(printed)} rad/s² at the printed step",
     )
 
 
@@ -202,7 +202,7 @@ def _argument(data, pictures):
         argument.literal_section(data),
         *_further(data, "literal", pictures),
         "### One free number of the literal drive",
-        argument.calibration_section(data),
+        rate.calibration_section(data),
         *_further(data, "calibration", pictures),
         "### Each printed formula alone",
         argument.formula_section(data),

@@ -8,10 +8,11 @@ from ratd.ensemble import cell_of, size_key
 from ratd.figures.style import plural
 from ratd.markdown import markdown_table
 from ratd.reproduction import grown
-from ratd.reproduction.argument import calibrated_grains, is_calibrated, lammps_over_ratd, printed_rate
+from ratd.reproduction.argument import lammps_over_ratd
 from ratd.reproduction.bounds import PM, ratios, shown_sizes, table3_omega
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
+from ratd.reproduction.rate import calibrated_grains, is_calibrated, printed_rate
 from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.statistics import median_of
 from ratd.units import NM

@@ -1,0 +1,243 @@
+"""The one free number of the drive literal, d omega/dt: how it was fixed, and what it gives."""
+
+import numpy as np
+
+from ratd.calibration import PRINTED_STEP, printed_acceleration, step_ratios
+from ratd.ensemble import cell_of
+from ratd.figures.style import plural
+from ratd.markdown import markdown_table
+from ratd.parameters import MARKS
+from ratd.parameters import OWN as AS_IT_IS
+from ratd.reproduction.bounds import median_and_range, ratios, sizes_of, table3_omega, whole_nm
+from ratd.reproduction.text import NOTHING, between, number, with_error
+from ratd.solid import solid_omega
+from ratd.statistics import equal_weights, median_of, quantiles, slope_error, slope_of
+
+
+def calibration_section(data):
+    """The rate of the literal drive that gives the onset of Fig. 4, and what the literal ensemble has in common."""
+    parts = []
+    found = data.calibration
+    if found is None:
+        parts.append("The calibration of d omega/dt on the onset of mass loss in Fig. 4 is not part of the data.")
+    else:
+        value = {name: found[name].item() for name in ("omega_onset", "calibrated", "exponent", "exponent_error")}
+        low, high = found["calibrated_low"].item(), found["calibrated_high"].item()
+        runs = found.to_dataframe()
+        parts.append(
+            "The literal drive has one number that the paper does not give, d omega/dt (the step is printed). The "
+            f"onset of mass loss in Fig. 4, {number(value['omega_onset'])} rad/s, fixes it: "
+            f"{number(value['calibrated'])} rad/s² ({between(low, high)} for one standard error), from a fit of "
+            f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
+            f"{plural(int(found.sizes['entry']), 'run')} of {plural(runs['seed'].nunique(), 'grain')}; the errors are "
+            "those of leaving out one grain after the other. The onset is the loss of 1 % of the mass. Besides the "
+            "radii of the monomers, which give the numbers of Fig. 1, nothing else was fitted to the paper."
+        )
+        pairs = step_ratios(runs)
+        if len(pairs):
+            own = median_of(pairs["ratio"], pairs["seed"])
+            longer, shorter = (
+                ", ".join(f"{f:g}" for f in sorted(pairs[name].unique()))
+                for name in ("timestep_factor", "shortest_factor")
+            )
+            parts.append(
+                f"It is the rate at the printed step, f = {PRINTED_STEP:g}. Only d omega/dt over the step counts, so "
+                "runs with a longer step and a d omega/dt that is as much greater, which are far cheaper, stand for "
+                f"it: in {plural(len(pairs), 'pair')} of runs of the same grain the onset with f = {longer} lies at "
+                f"{with_error(own['median'], own['error'])} times that with f = {shorter} "
+                f"({between(pairs['ratio'].min(), pairs['ratio'].max())} from least to greatest)."
+            )
+    parts += [*_shorter_step(data), *solid_parts(data)]
+    if "literal" in data.tables:
+        law = data.plan.spin_up_of("literal")
+        table = ratios(data.tables["literal"], data.plan.materials)
+        rate = printed_rate(data)
+        stands = "" if rate is None else f", which stands for {number(rate)} rad/s² at the printed step"
+        parts.append(
+            f"The grains of the drive `literal` here were spun up with {data.plan.pace('literal')} and f = "
+            f"{law['timestep_factor']:g}{stands}. The table sets them beside Eq. 33 with Table 3 for the same grains: "
+            "level (median of the ratio), and how the types are ordered at the sizes that all of them have, from the "
+            "lowest omega to the highest."
+        )
+        rows = []
+        for name, part in table.groupby("material", sort=False):
+            levels = [
+                f"{kind} {median_and_range(own, 1 / own['printed_over_found'])}"
+                for kind, own in part.groupby("type", sort=False)
+            ]
+            printed = part.assign(printed=part["printed_over_found"] * part["omega_disr"])
+            rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
+        parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
+        parts.append(
+            "The level follows from the one number that was fixed. What tests the drive is how omega_disr goes with "
+            "type and size: the order of the types is in the table, the fall with size under Does omega_disr flatten "
+            "with size?, beside that of Eq. 33 with Table 3."
+        )
+    return "\n\n".join(parts)
+
+
+def _shorter_step(data):
+    """Grains of Fig. 9 beside themselves in the ensemble, which the literal drive spun up with a longer step."""
+    if "literal" not in data.tables or "literal" not in data.parameters:
+        return []
+    law, figure9, rate = data.plan.spin_up_of("literal"), data.plan.config["figures"]["figure9"], printed_rate(data)
+    if figure9 is None or rate is None:
+        return []
+    other = figure9["literal"]
+    if not np.isclose(rate, printed_acceleration(**other), rtol=1e-6, atol=0):
+        return []
+    short = data.parameters["literal"]
+    both = _same_grains(data.tables["literal"], short[short["parameter"] == AS_IT_IS], ("_long", "_short"))
+    found = {mark: median_of(both[f"{mark}_long"] / both[f"{mark}_short"]) for mark in MARKS}
+    if not all(own["n"] for own in found.values()):
+        return []
+    words = [
+        f"{name} at {with_error(found[mark]['median'], found[mark]['error'])} times "
+        f"({between(found[mark]['low'], found[mark]['high'])} for the middle two thirds)"
+        for mark, name in (("omega_mass_75", "a quarter of the mass is lost"), ("omega_disr", "the stress is greatest"))
+    ]
+    return [
+        f"The same can be seen in the {plural(len(both), 'grain')} that both the ensemble and Fig. 9 have: with f = "
+        f"{law['timestep_factor']:g} {' and '.join(words)} the omega with f = {other['timestep_factor']:g}."
+    ]
+
+
+def _same_grains(table, other, suffixes):
+    """Grains that two tables have, with the columns of both; those of one name get a suffix each."""
+    key = ["material", "type", "seed", "nm"]
+    return table.assign(nm=whole_nm).merge(other.assign(nm=whole_nm), on=key, suffixes=suffixes)
+
+
+def printed_rate(data):
+    """d omega/dt [rad/s2] at the printed step that the runs of the drive `literal` stand for; None without one."""
+    law = data.plan.spin_up_of("literal")
+    rate = law["angular_acceleration"]
+    return None if rate is None else printed_acceleration(rate, law["timestep_factor"])
+
+
+def is_calibrated(data):
+    """Whether the drive `literal` was run with the d omega/dt that its calibration gives, within a standard error."""
+    rate = printed_rate(data)
+    if data.calibration is None or rate is None:
+        return False
+    return data.calibration["calibrated_low"].item() <= rate <= data.calibration["calibrated_high"].item()
+
+
+def solid_parts(data):
+    """What the literal drive would do at the calibrated rate, from the grains of the drive `prescribed`; paragraphs."""
+    table = calibrated_grains(data)
+    if table is None:
+        return []
+    law = data.plan.spin_up_of("literal")
+    parts = [
+        "What the literal drive gives at another rate needs no run: a solid grain under the printed equations turns "
+        "with Omega in the inertial frame, d Omega/dt = s d omega/dt - (1 - s) omega (omega - Omega)² dt, where s is "
+        "the share of the monomers' own moments of inertia, and parts where |Omega| is the omega_disr of the drive "
+        "`prescribed` for the same grain (docs/validation.md, The literal drive)."
+    ]
+    rate = law["angular_acceleration"]
+    if "literal" in data.tables and rate is not None:
+        consistent = with_literal_step(data, law["timestep_factor"])
+        both = _same_grains(consistent, data.tables["literal"], ("", "_literal"))
+        ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
+        parts[0] += (
+            f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
+            f"of the run lies at {with_error(ratio['median'], ratio['error'])} times that "
+            f"({between(ratio['low'], ratio['high'])} for the middle two thirds)."
+        )
+    parts.append(
+        f"At the calibrated {number(data.calibration['calibrated'].item())} rad/s² and f = {PRINTED_STEP:g} it "
+        "gives, for all grains of the drive `prescribed`:"
+    )
+    rows, flatter, of = [], 0, 0
+    for name, part in table.groupby("material", sort=False):
+        for kind, own in part.groupby("type", sort=False):
+            slope, error = _slope(own)
+            sizes = sizes_of(own)
+            printed, _ = _slope(own.assign(omega_disr=table3_omega(own, data.plan.materials)))
+            of += np.isfinite(printed)
+            flatter += slope > printed
+            rows.append(
+                [
+                    name,
+                    kind,
+                    sizes,
+                    median_and_range(own, 1 / own["printed_over_found"]),
+                    with_error(slope, error),
+                    number(printed),
+                ]
+            )
+        printed = part.assign(printed=table3_omega(part, data.plan.materials))
+        rows.append([name, "order", "", f"{_order(part, 'omega_disr')}; Table 3: {_order(printed, 'printed')}", "", ""])
+    head = ["material", "type", "sizes", "omega over Table 3", "d ln omega/d ln a_eff", "of Table 3"]
+    parts.append(markdown_table(head, rows))
+    parts.append(f"It falls less steeply with size than Table 3 in {flatter} of {plural(of, 'case')}.")
+    return parts
+
+
+def with_literal_step(data, timestep_factor):
+    """Table of the grains of the drive `prescribed`, with literal_step, the time step [s] for another f."""
+    table = data.tables["prescribed"]
+    own = data.plan.spin_up_of("prescribed")["timestep_factor"]
+    return table.assign(literal_step=table["timestep"] * timestep_factor / own)
+
+
+def calibrated_grains(data):
+    """Grains of the drive `prescribed` with the omega_disr that the calibrated drive `literal` would give them.
+
+    Parameters
+    ----------
+    data : ratd.reproduction.data.Data
+
+    Returns
+    -------
+    pandas.DataFrame or None
+        As from `ratd.reproduction.bounds.ratios`; None where the data hold no calibration or no such grains.
+    """
+    if data.calibration is None or "prescribed" not in data.tables:
+        return None
+    table = with_literal_step(data, PRINTED_STEP)
+    omega = solid_prediction(table, data.calibration["calibrated"].item())
+    return ratios(table.assign(omega_disr=omega), data.plan.materials)
+
+
+def solid_prediction(table, acceleration):
+    """omega at which solid grains part under the printed equations, from their omega_disr of the consistent model.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Grains with omega_disr [rad/s] of the drive `prescribed`, spin_share, and literal_step [s], the time step of the
+        drive `literal`.
+    acceleration : float
+        d omega/dt [rad/s2].
+
+    Returns
+    -------
+    numpy.ndarray
+        See `ratd.solid.solid_omega`; NaN where something is not known.
+    """
+    columns = table[["omega_disr", "spin_share", "literal_step"]].to_numpy(float)
+    return np.array(
+        [solid_omega(own[0], own[1], acceleration, own[2])[0] if np.isfinite(own).all() else np.nan for own in columns]
+    )
+
+
+def _slope(table):
+    """Slope of ln omega_disr against ln a_eff, and its standard error; all cells count alike."""
+    known = table[table["omega_disr"].notna()]
+    x, y = np.log(known["a_eff"].to_numpy(float)), np.log(known["omega_disr"].to_numpy(float))
+    slope, influence = slope_of(x, y, weights=equal_weights(cell_of(known)))
+    return slope, slope_error(influence)
+
+
+def _order(table, column):
+    """Types from the lowest to the highest median at the sizes that all types have, text."""
+    table = table.assign(nm=whole_nm(table))
+    counts = table.groupby("nm")["type"].nunique()
+    common = counts.index[counts == table["type"].nunique()]
+    if not len(common) or table["type"].nunique() < 2:
+        return NOTHING
+    known = table[table["nm"].isin(common) & table[column].notna()]
+    medians = {kind: quantiles(part[column], 0.5, equal_weights(cell_of(part))) for kind, part in known.groupby("type")}
+    return " < ".join(sorted(medians, key=medians.get))
