@@ -1,4 +1,4 @@
-"""Why the consistent model lies below print: bound, tensile strength, LAMMPS, step and rate of the literal drive."""
+"""Why the consistent model lies below print: bound, tensile strength, LAMMPS, single formulae, the literal drive."""
 
 import numpy as np
 import pandas as pd
