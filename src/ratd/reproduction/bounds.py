@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ratd.beyond import SPLIT
+from ratd.beyond import SPLIT, slopes
 from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_of, eq33, size_key
 from ratd.materials import get_material
@@ -69,6 +69,11 @@ def table3_omega(table, materials=None):
             *TABLE_3[name, kind],
         )
     return result
+
+
+def printed_slopes(table, materials=None):
+    """How Eq. 33 with the printed Table 3 goes with size, for the grains of a table: see `ratd.beyond.slopes`."""
+    return slopes(table.assign(omega_disr=table3_omega(table, materials)))
 
 
 def strength_omega(table, materials=None):

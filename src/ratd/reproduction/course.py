@@ -4,10 +4,12 @@ import numpy as np
 
 from ratd.calibration import onset
 from ratd.ensemble import cell_of
+from ratd.fragmentation import HALF
 from ratd.marks import disruption
 from ratd.reproduction.bounds import by_type_and_size
 from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
+    NEAR,
     NOTHING,
     ROUGHLY,
     Answer,
@@ -26,8 +28,6 @@ LEVEL = (
     "hardly turns, and omega follows d omega/dt and the step (What the literal drive does)."
 )
 BAM = ("BAM1", "BAM2")
-FIRST_HALF = 0.5
-"""Part of the mass of a grain whose fragments the data hold (`ratd.fragmentation.HALF`)."""
 MOSTLY = 0.8
 """Share that counts as "almost completely"."""
 LARGER = 0.95
@@ -42,7 +42,7 @@ def rows(data):
         drive_rows(
             "decade",
             cell,
-            lambda t, p: median_answer(t["omega_end"] / t["omega_first_loss"], p, ROUGHLY),
+            lambda t, p: _median_answer(t["omega_end"] / t["omega_first_loss"], p, ROUGHLY),
             "The end is one contact left; the last two monomers of a grain can hold to many times omega_disr.",
         ),
         drive_rows(
@@ -68,7 +68,7 @@ def rows(data):
     ]
 
 
-def median_answer(values, printed, factor, cell=None):
+def _median_answer(values, printed, factor=NEAR, cell=None):
     """Answer with the median of some values and its bootstrap error, or None without values."""
     found = median_of(values, cell=cell)
     return answer(found["median"], found["error"], printed, factor) if found["n"] else None
@@ -94,11 +94,8 @@ def _onset(data):
     fixed = is_calibrated(data)
 
     def evaluate(drive, runs, printed):
-        found = median_of([onset(run) for run in runs])
-        if not found["n"]:
-            return None
-        own = answer(found["median"], found["error"], printed)
-        return Answer(f"{own.text} (fixed on this)", own.ratio) if drive == "literal" and fixed else own
+        own = _median_answer([onset(run) for run in runs], printed)
+        return Answer(f"{own.text} (fixed on this)", own.ratio) if own and drive == "literal" and fixed else own
 
     sources = {drive: (drive, runs) for drive, runs in data.course.items()}
     return drive_rows("onset", sources, lambda source, p: evaluate(*source, p), f"1 % of the mass lost. {LEVEL}")
@@ -115,9 +112,8 @@ def _gain(table, printed):
 def _quarter(table, printed):
     parts, verdicts = [], []
     for kind, sizes, part in by_type_and_size(table):
-        found = median_of(part["omega_mass_75"] / part["omega_disr"], cell=cell_of(part))
-        if found["n"]:
-            own = answer(found["median"], found["error"], printed)
+        own = _median_answer(part["omega_mass_75"] / part["omega_disr"], printed, cell=cell_of(part))
+        if own:
             parts.append(f"{kind} {sizes} {own.text}")
             verdicts.append(own.holds)
     return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
@@ -173,6 +169,6 @@ def _blocks(part, printed):
         return None
     mass = part["weight"] * part["mass_fraction"]
     share = mass[part["fragment_n_monomers"] == 1].sum() / mass.sum()
-    most = FIRST_HALF * share + 1 - FIRST_HALF  # if nothing but single monomers left afterwards
+    most = HALF * share + 1 - HALF  # if nothing but single monomers left afterwards
     text = f"{number(share)} of the first half of the mass, so at most {number(most)} of all"
     return Answer(text, over(most, printed.value), True if share >= MOSTLY else False if most < MOSTLY else None)

@@ -9,7 +9,7 @@ from ratd.figures.figure10 import relative_error
 from ratd.figures.style import plural
 from ratd.parameters import MARKS
 from ratd.reproduction import course, shapes
-from ratd.reproduction.bounds import table3_omega
+from ratd.reproduction.bounds import printed_slopes, table3_omega
 from ratd.reproduction.course import LEVEL
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import (
@@ -81,12 +81,11 @@ def _omega(data):
         return Answer(told_slopes(found), holds=all_of(verdicts))
 
     materials = data.plan.materials
-    printed = data.grown.assign(omega_disr=table3_omega(data.grown, materials))
-    known = printed["omega_disr"].dropna()
+    known = table3_omega(data.grown, materials).dropna()
     itself = (
         f" Eq. 33 with Table 3 itself spans {between(known.min(), known.max())} for our grains." if len(known) else ""
     )
-    fit = told_slopes(slopes(printed))
+    fit = told_slopes(printed_slopes(data.grown, materials))
     return [
         drive_rows("order", data.tables, means, LEVEL),
         drive_rows("range", data.tables, spread, LEVEL + itself),

@@ -10,7 +10,7 @@ from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, cell_statistics, size_key
 from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
 from ratd.reproduction.argument import printed_porosity
-from ratd.reproduction.bounds import PM
+from ratd.reproduction.bounds import PM, whole_nm
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.text import (
     NOTHING,
@@ -160,7 +160,7 @@ def figure1_table(data):
     head = ["type", "size [nm]"]
     head += [f"{what}{of}" for what in OF_FIG_1 for of in (", printed", ", ours", ", 95 % of ours")]
     ours = {(grain.type, round(grain.a_eff / NM)): grain for grain in data.grains}
-    size = np.rint(data.grown["a_eff"] / NM).astype(int)
+    size = whole_nm(data.grown)
     rows, outside = [], []
     for (kind, nm), printed in GRAINS.items():
         grain, all_ours = ours.get((kind, nm)), data.grown[(data.grown["type"] == kind) & (size == nm)]

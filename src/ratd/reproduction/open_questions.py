@@ -13,7 +13,7 @@ from ratd.beyond import (
 )
 from ratd.fragmentation import STAGES
 from ratd.markdown import markdown_table
-from ratd.reproduction.bounds import table3_omega
+from ratd.reproduction.bounds import printed_slopes
 from ratd.reproduction.text import NOTHING, interval, number, with_error
 
 JUSTIFIED = 0.1
@@ -64,8 +64,7 @@ def flattening_section(data):
     """Whether omega_disr flattens with size, and whether the cut bound does, which is known of all grown grains."""
     sources = [(f"omega_disr, {drive}", slopes(table)) for drive, table in data.tables.items()]
     sources.append(("cut bound", slopes(data.grown, "cut_bound")))
-    printed = data.grown.assign(omega_disr=table3_omega(data.grown, data.plan.materials))
-    sources.append(("Eq. 33 with Table 3", slopes(printed)))
+    sources.append(("Eq. 33 with Table 3", printed_slopes(data.grown, data.plan.materials)))
     rows = []
     for name, found in sources:
         for _, row in found.iterrows():

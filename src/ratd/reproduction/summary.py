@@ -9,7 +9,7 @@ from ratd.figures.style import plural
 from ratd.markdown import markdown_table
 from ratd.reproduction import grown
 from ratd.reproduction.argument import lammps_over_ratd
-from ratd.reproduction.bounds import PM, ratios, shown_sizes, table3_omega
+from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.rate import calibrated_grains, is_calibrated, printed_rate
@@ -164,8 +164,7 @@ def _flattening(data):
     materials = data.plan.materials
     sources = {f"omega_disr, drive `{drive}`": slopes(table) for drive, table in data.tables.items()}
     sources["the bound from cuts"] = slopes(data.grown, "cut_bound")
-    printed = data.grown.assign(omega_disr=table3_omega(data.grown, materials))
-    sources["Eq. 33 with the printed Table 3"] = slopes(printed)
+    sources["Eq. 33 with the printed Table 3"] = printed_slopes(data.grown, materials)
     types = list(dict.fromkeys(data.grown["type"]))
     rows = []
     for name, found in sources.items():
