@@ -24,7 +24,6 @@ from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
 from ratd.errors import InputError
 from ratd.figures import figure2, figure4, figure6, figure7, figure8, figure10, save
 from ratd.figures.figure6 import axis_ratios
-from ratd.figures.figure8 import predictions
 from ratd.figures.style import (
     GREY,
     ONE_COLUMN,
@@ -42,6 +41,7 @@ from ratd.figures.style import (
 from ratd.marks import disruption
 from ratd.materials import get_material
 from ratd.pair import force_controlled_omega
+from ratd.tensile import predictions
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 75e-9, 100e-9)
@@ -413,27 +413,6 @@ def test_figure8_says_where_it_scales_instead():
     assert words(figure8(table)).count("scaled at 150 nm") == 1
     nothing, anchor = predictions(cell_statistics(table.assign(omega_disr=np.nan)), get_material("co-S"), 100e-9)
     assert nothing["T19"].isna().all() and np.isnan(anchor["T19"]) and nothing["absolute"].notna().all()
-
-
-def test_strengths_are_those_of_all_grown_grains_without_impossible_dimensions():
-    grown = make_table(("co-S", "q-S"), ("BAM2",), seeds=9)
-    impossible = (grown["seed"] < 4) & (grown["a_eff"] < 200e-9)
-    grown.loc[impossible, "fractal_dimension"] = 3.0 + 0.5 * grown["seed"]
-    table = grown[(grown["seed"] < 2) & (grown["material"] == "co-S")]
-    cells, material = cell_statistics(table), get_material("co-S")
-    curves, _ = predictions(cells, material, 300e-9, grown)
-    here = grown[grown["material"] == "co-S"]
-    size = here.groupby("a_eff")
-    phi, radius = size["filling_factor"].mean().to_numpy(), size["mean_monomer_radius"].mean().to_numpy()
-    dimension = here[here["fractal_dimension"] < 3].groupby("a_eff")["fractal_dimension"].median()
-    strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
-    np.testing.assert_allclose(curves["absolute"], 2 / cells["a_eff"] * np.sqrt(strength / material.density))
-    unit = curves["T19 fractal"] * cells["a_eff"] / phi ** (1 / (3 - dimension.reindex(cells["a_eff"]).to_numpy()))
-    assert unit.notna().sum() > 8
-    np.testing.assert_allclose(unit.dropna(), unit.dropna().iloc[0])
-    # a noisy mean of few grains may be near 3 and more: without the table of grown grains it stands as it is
-    alone, _ = predictions(cells, material, 300e-9)
-    assert alone["T19 fractal"].isna().sum() > curves["T19 fractal"].isna().sum()
 
 
 def test_figure8_draws_the_lines_of_the_grown_grains():

@@ -5,8 +5,12 @@ is how they depend on the grain. That of Tatsuuma et al. has an absolute value, 
 """
 
 import numpy as np
+import pandas as pd
 
-__all__ = ["SCALINGS", "eq27", "fractal_exponent", "tensile_strength_greenberg1995"]
+from ratd.bound import tensile_strength_tatsuuma2019
+from ratd.ensemble import size_key
+
+__all__ = ["SCALINGS", "eq27", "fractal_exponent", "predictions", "tensile_strength_greenberg1995"]
 
 SEIZINGER_2013 = (1.6, 1.9)
 """Exponents of phi for quartz BA, BAM and hexagonal aggregates (Seizinger et al. 2013, A&A 559, A19)."""
@@ -100,3 +104,65 @@ SCALINGS = {
     "T19 fractal": (r"T19: $\phi^{2/(3-D_\mathrm{f})}$", _fractal),
 }
 """Model -> text and the tensile strength up to a factor, of (<N_con>, phi, D_f)."""
+_DEPENDS_ON = ("n_contacts", "n_monomers", "filling_factor", "fractal_dimension", "mean_monomer_radius")
+"""What the strengths depend on."""
+
+
+def predictions(cells, material, scaled_at, grown=None):
+    """omega [rad s-1] of Eq. 27 for each cell, with the strengths of the literature.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        What `ratd.ensemble.cell_statistics` returns, of one material and type.
+    material : ratd.Material
+    scaled_at : float
+        Size a_eff [m] at which a strength that is known up to a factor is scaled to the mean omega_disr of the cell.
+    grown : pandas.DataFrame, optional
+        Table of grains as grown, of all cells or more, which N_con, N_mon, phi, a_mon and D_f are taken from; default:
+        the means in `cells`.
+
+    Returns
+    -------
+    curves : pandas.DataFrame
+        A column a model, a row a cell: those of `SCALINGS`, scaled, and "absolute", the strength of Tatsuuma et al.
+        2019 as it stands, with the mean monomer radius of the cell. NaN where a cell lacks a value.
+    anchor : dict of str to float
+        Size [m] at which each was scaled: the nearest to `scaled_at` at which both are known; NaN if there is none.
+
+    Notes
+    -----
+    Strengths are those of the mean N_con/N_mon and phi and of one D_f of a cell: a mean over strengths of single grains
+    would rest on the few with D_f near 3, where the exponent 2/(3 - D_f) has no bound. With `grown`, D_f is the median
+    of those below 3: no body in space has more, such a value comes from a fit to few monomers.
+    """
+    size = cells["a_eff"].to_numpy(float)
+    found = cells["omega_disr_mean"].to_numpy(float)
+    at_rest = _at_rest(cells, grown)
+    phi, dimension, radius = (at_rest[name] for name in ("filling_factor", "fractal_dimension", "mean_monomer_radius"))
+    contacts = at_rest["n_contacts"] / at_rest["n_monomers"]
+    curves, anchor = {}, {}
+    for name, (_, strength) in SCALINGS.items():
+        shape = eq27(size, strength(contacts, phi, dimension), material.density)
+        known = np.flatnonzero(np.isfinite(shape) & np.isfinite(found))
+        if not len(known):
+            curves[name], anchor[name] = np.full(len(size), np.nan), np.nan
+            continue
+        k = known[np.argmin(np.abs(size[known] - scaled_at))]
+        curves[name], anchor[name] = shape * (found[k] / shape[k]), size[k]
+    strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
+    curves["absolute"] = eq27(size, strength, material.density)
+    return pd.DataFrame(curves, index=cells.index), anchor
+
+
+def _at_rest(cells, grown):
+    """Name of `_DEPENDS_ON` -> its value in each cell, see `predictions`."""
+    if grown is None:
+        return {name: cells[f"{name}_mean"].to_numpy(float) for name in _DEPENDS_ON}
+    keys = ["material", "type", "size"]
+    possible = grown["fractal_dimension"].where(grown["fractal_dimension"] < 3)
+    groups = grown.assign(size=size_key(grown["a_eff"]), fractal_dimension=possible).groupby(keys)
+    wanted = pd.MultiIndex.from_frame(cells.assign(size=size_key(cells["a_eff"]))[keys])
+    found = groups[list(_DEPENDS_ON)].mean().reindex(wanted)
+    found["fractal_dimension"] = groups["fractal_dimension"].median()
+    return {name: found[name].to_numpy(float) for name in _DEPENDS_ON}

@@ -1,10 +1,8 @@
 """Fig. 8: the angular velocity of disruption against what tensile strengths predict."""
 
 import numpy as np
-import pandas as pd
 
-from ratd.bound import tensile_strength_tatsuuma2019
-from ratd.ensemble import cell_statistics, size_key
+from ratd.ensemble import cell_statistics
 from ratd.figures.style import (
     GREY,
     ONE_COLUMN,
@@ -22,73 +20,11 @@ from ratd.figures.style import (
     type_style,
 )
 from ratd.materials import get_material
-from ratd.tensile import SCALINGS, eq27
+from ratd.tensile import SCALINGS, predictions
 from ratd.units import NM
 
 LINES = {"G95": "-", "S13 low": "--", "S13 high": ":", "T19": "-.", "T19 fractal": (0, (5, 1, 1, 1, 1, 1))}
-AT_REST = ("n_contacts", "n_monomers", "filling_factor", "fractal_dimension", "mean_monomer_radius")
-"""What the strengths depend on."""
 ABSOLUTE = {"color": "#000000", "lw": 0.8, "label": r"T19: $0.951\,\gamma\phi^{1.8}/a_\mathrm{mon}$, not scaled"}
-
-
-def predictions(cells, material, scaled_at, grown=None):
-    """omega [rad s-1] of Eq. 27 for each cell, with the strengths of the literature.
-
-    Parameters
-    ----------
-    cells : pandas.DataFrame
-        What `ratd.ensemble.cell_statistics` returns, of one material and type.
-    material : ratd.Material
-    scaled_at : float
-        Size a_eff [m] at which a strength that is known up to a factor is scaled to the mean omega_disr of the cell.
-    grown : pandas.DataFrame, optional
-        Table of grains as grown, of all cells or more, which N_con, N_mon, phi, a_mon and D_f are taken from; default:
-        the means in `cells`.
-
-    Returns
-    -------
-    curves : pandas.DataFrame
-        A column a model, a row a cell: those of `ratd.tensile.SCALINGS`, scaled, and "absolute", the strength of
-        Tatsuuma et al. 2019 as it stands, with the mean monomer radius of the cell. NaN where a cell lacks a value.
-    anchor : dict of str to float
-        Size [m] at which each was scaled: the nearest to `scaled_at` at which both are known; NaN if there is none.
-
-    Notes
-    -----
-    Strengths are those of the mean N_con/N_mon and phi and of one D_f of a cell: a mean over strengths of single grains
-    would rest on the few with D_f near 3, where the exponent 2/(3 - D_f) has no bound. With `grown`, D_f is the median
-    of those below 3: no body in space has more, such a value comes from a fit to few monomers.
-    """
-    size = cells["a_eff"].to_numpy(float)
-    found = cells["omega_disr_mean"].to_numpy(float)
-    at_rest = _at_rest(cells, grown)
-    phi, dimension, radius = (at_rest[name] for name in ("filling_factor", "fractal_dimension", "mean_monomer_radius"))
-    contacts = at_rest["n_contacts"] / at_rest["n_monomers"]
-    curves, anchor = {}, {}
-    for name, (_, strength) in SCALINGS.items():
-        shape = eq27(size, strength(contacts, phi, dimension), material.density)
-        known = np.flatnonzero(np.isfinite(shape) & np.isfinite(found))
-        if not len(known):
-            curves[name], anchor[name] = np.full(len(size), np.nan), np.nan
-            continue
-        k = known[np.argmin(np.abs(size[known] - scaled_at))]
-        curves[name], anchor[name] = shape * (found[k] / shape[k]), size[k]
-    strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
-    curves["absolute"] = eq27(size, strength, material.density)
-    return pd.DataFrame(curves, index=cells.index), anchor
-
-
-def _at_rest(cells, grown):
-    """Name of `AT_REST` -> its value in each cell, see `predictions`."""
-    if grown is None:
-        return {name: cells[f"{name}_mean"].to_numpy(float) for name in AT_REST}
-    keys = ["material", "type", "size"]
-    possible = grown["fractal_dimension"].where(grown["fractal_dimension"] < 3)
-    groups = grown.assign(size=size_key(grown["a_eff"]), fractal_dimension=possible).groupby(keys)
-    wanted = pd.MultiIndex.from_frame(cells.assign(size=size_key(cells["a_eff"]))[keys])
-    found = groups[list(AT_REST)].mean().reindex(wanted)
-    found["fractal_dimension"] = groups["fractal_dimension"].median()
-    return {name: found[name].to_numpy(float) for name in AT_REST}
 
 
 @styled
@@ -102,13 +38,14 @@ def figure8(table, material="co-S", kind="BAM2", scaled_at=100e-9, drive=None, m
     material, kind : str
         Which grains.
     scaled_at : float
-        See `predictions` [m].
+        See `ratd.tensile.predictions` [m].
     drive : str, optional
         Named in the title; default: what the table says.
     materials : optional
         Table of materials, handed to `ratd.materials.get_material`.
     grown : pandas.DataFrame, optional
-        All grains as grown, also those that were not spun up: see `predictions`; default: those of `table`.
+        All grains as grown, also those that were not spun up: see `ratd.tensile.predictions`; default: those of
+        `table`.
 
     Returns
     -------

@@ -4,7 +4,6 @@ import numpy as np
 
 from ratd.beyond import SPLIT, slopes
 from ratd.ensemble import cell_statistics
-from ratd.figures.figure8 import predictions
 from ratd.figures.figure10 import relative_error
 from ratd.figures.style import plural
 from ratd.parameters import MARKS
@@ -28,6 +27,7 @@ from ratd.reproduction.text import (
 )
 from ratd.schema import END_REASONS
 from ratd.statistics import median_of
+from ratd.tensile import predictions
 from ratd.units import NM
 
 FLAT = 0.25
