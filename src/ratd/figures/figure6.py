@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from ratd.beyond import oblate_counts
 from ratd.figures.style import (
     GREY,
     ONE_COLUMN,
@@ -69,7 +70,9 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
             axes.plot(*start, **_dot(look))
             axes.plot(*end, **_cross(look))
             greatest = np.nanmax(np.column_stack([greatest, start, end]), axis=1)
-            text = f"{kind} oblate: {_oblate(start)} \N{RIGHTWARDS ARROW} {_oblate(end)}"
+            (counts,) = oblate_counts(grains).to_dict("records")
+            first, last = (f"{counts[f'{when}_oblate']}/{counts[f'{when}_known']}" for when in ("start", "disr"))
+            text = f"{kind} oblate: {first} \N{RIGHTWARDS ARROW} {last}"
             axes.text(0.97, 0.97 - 0.07 * lines, text, transform=axes.transAxes, ha="right", va="top", c=look["color"])
             lines += 1
 
@@ -127,9 +130,3 @@ def axis_ratios(table, when):
     """
     a, b, c = (table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc")
     return np.array([b / a, c / b])
-
-
-def _oblate(ratios):
-    """Such as '12/30': oblate ones (b/a > c/b) among the grains with a known shape."""
-    known = np.isfinite(ratios).all(axis=0)
-    return f"{int(np.sum(ratios[0, known] > ratios[1, known]))}/{int(known.sum())}"
