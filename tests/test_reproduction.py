@@ -150,6 +150,8 @@ def test_numbers_as_text(value, text):
 def test_values_with_errors_and_ranges_as_text():
     assert with_error(1.5, 0.02) == "1.500 ± 0.020"
     assert with_error(3.25e8, 1.2e7) == "(3.25 ± 0.12)e8"
+    assert with_error(-7e-5, 3.17e-3) == "-0.0001 ± 0.0032" and with_error(2e-9, 5e-8) == "(0.2 ± 5.0)e-8"
+    assert with_error(0.0, 2.0) == "0.0 ± 2.0" and with_error(1.5, np.inf) == "1.5"
     assert with_error(0.95, 1e-17) == "0.95" and with_error(2e9, np.nan) == "2.00e9" and with_error(np.nan, 1) == "–"
     assert between(0.4, 5e8) == "0.4–5.00e8" and between(-0.4, -0.1) == "-0.4 to -0.1"
     assert over(3.0, 6.0) == "0.5" and over((1.0, 4.0), (2.0, 2.0)) == "0.5 / 2" and over(1.0, 0.0) == "–"

@@ -30,11 +30,12 @@ def with_error(value, error):
     """A value with its error, such as "1.013 ± 0.024" or "(1.02 ± 0.03)e8"."""
     if value is None or not np.isfinite(value):
         return NOTHING
-    if not error > 1e-5 * abs(value):  # less than is shown, or the rounding of equal values
+    if not 1e-5 * abs(value) < error < np.inf:  # less than is shown, or the rounding of equal values
         return number(value)
-    if value == 0 or 1e-3 <= abs(value) < 1e4:
+    size = max(abs(value), error)  # a value may be far less than its error
+    if 1e-3 <= size < 1e4:
         return measured(value, error)
-    exponent = int(np.floor(np.log10(abs(value))))
+    exponent = int(np.floor(np.log10(size)))
     scaled = measured(value / 10.0**exponent, error / 10.0**exponent)
     return f"({scaled})e{exponent}" if "±" in scaled else f"{scaled}e{exponent}"
 
