@@ -130,7 +130,8 @@ def made_up_literal():
     marks = dict.fromkeys(("omega_disr", "omega_first_loss", "omega_mass_75"))
     rows = []
     for grain in grains:
-        row = dict.fromkeys(LITERAL_COLUMNS, np.nan) | grain | {"spin_share": 0.05, "timestep_factor": 0.1}
+        row = dict.fromkeys(LITERAL_COLUMNS, np.nan) | grain
+        row |= {"spin_share": 0.05, "timestep_factor": 0.1, "turned": 9e7, "stretched": 1.5}
         rows.append(row | {"drive": "prescribed"} | dict.fromkeys(marks, 1e8))
         rows += [
             row | {"drive": "literal", "coriolis": term, "angular_acceleration": rate, "timestep": 1e-12}
@@ -149,7 +150,25 @@ def test_figure_of_the_literal_drive_has_the_symbols_of_its_text():
     (legend,) = drawn.legends
     shown = dict(zip([text.get_text() for text in legend.texts], legend.legend_handles, strict=True))
     (solid,) = [handle for label, handle in shown.items() if label.startswith("solid grain")]
-    assert solid.get_color() == "black" and "equal" in shown
+    assert solid.get_color() == "black" and "as fast as in the consistent model" in shown
+
+
+def test_figure_of_the_literal_drive_sets_what_turns_a_grain_beside_how_it_stretches():
+    right = literal.draw(made_up_literal()).axes[1]
+    (dashed,) = [line for line in right.lines if line.get_linestyle() == "--"]
+    np.testing.assert_allclose(dashed.get_xdata(), dashed.get_ydata())
+    markers = np.concatenate([line.get_xydata() for line in right.lines if line.get_marker() in TYPE_MARKER.values()])
+    np.testing.assert_allclose(markers, [[1.5, 1.5 * 0.9]] * 4)
+
+
+def test_text_of_the_literal_drive_tells_how_fast_grains_turn():
+    text = literal.tell(made_up_literal())
+    assert "| 0.0500 | 7.32 | 1.35 | 1.5 | 0.9 |" in text
+    assert ": BA 0.9 (0.90–0.90), 1.35 (1.35–1.35); BAM2 0.9" in text
+    table = made_up_literal()
+    kept = table.assign(omega_first_loss=table["omega_first_loss"].where(table["drive"] == "prescribed"))
+    assert literal.tell(kept).endswith("No grain lost mass in these runs.")
+    assert not [line for line in literal.draw(kept).axes[1].lines if line.get_linestyle() == "--"]
 
 
 def test_every_figure_that_the_paper_does_not_have_has_a_caption():

@@ -6,13 +6,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from scipy.stats import kstest
 
 import ratd
 from ratd import schema
+from ratd.growth import grow
 from ratd.markdown import markdown_table, measured
 from ratd.materials import MATERIALS
-from ratd.solid import solid_omega, spin_share
+from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 from ratd.statistics import median_of
 from ratd.validation import (
@@ -244,6 +246,20 @@ def test_growth():
     assert "0.46 ± 0.01" in works(show_growth, rows)
 
 
+def test_both_ways_to_migrate_stand_beside_the_printed_radius():
+    rows = growth.compute({"material": "q-S", "type": "BAM1", "a_eff": 200e-9, "seeds": 6})
+    assert [row["migration"] for row in rows] == ["random"] * 6 + ["nearest"] * 6
+    aggregates = growth.compute({"material": "q-S", "type": "BA", "monomers": 32, "seeds": 2})
+    porosity = [grow("BAM1", 200e-9, "q-S", 0, migration=how).shape.porosity for how in ("random", "nearest")]
+    assert [rows[0]["porosity"], rows[6]["porosity"]] == porosity and porosity[0] != porosity[1]
+    table = pd.DataFrame(rows).assign(enclosing_radius=np.tile([400e-9, 500e-9], 6), porosity=np.repeat([0.6, 0.75], 6))
+    text = works(show_growth, table.to_dict("records") + aggregates)
+    assert text.count("| 457.4 | 450 (400–500) | 3 | 0.7 |") == 2
+    assert "BAM1 nearest, 1 and 0 of 1; BAM1 random, 1 and 1 of 1." in text
+    other = table.assign(enclosing_radius=500e-9, a_eff=210e-9).to_dict("records")
+    assert "BAM1" not in works(show_growth, other + aggregates)
+
+
 def test_arrivals_are_uniform():
     """Means of 1/2 and squares of 1/3; a test of the whole distribution with a chance of 1e-6 to fail for bad luck."""
     rows = growth.compute({"material": "q-S", "arrivals": 3000})
@@ -363,7 +379,38 @@ def test_literal_drive():
     np.testing.assert_allclose(explicit["omega_first_loss"], explicit["solid_omega_first_loss"], rtol=0.05)
     parts = explicit["scale"] * explicit["spin_share"] / explicit["true_omega_first_loss"]
     np.testing.assert_allclose(parts, [0.5, 0.5, 0.8, 0.8], rtol=0.01)
+    exact = runs[runs["coriolis"] == "exact"]
+    assert len(exact) == 2 and runs.loc[runs["coriolis"] == "explicit", "turned"].isna().all()
+    assert exact["turns"].tolist() == pytest.approx([1.0, 1.0], abs=0.3)
+    assert (exact["unstretched"] == exact["turns"] * exact["stretched"]).all()
     works(show_literal, rows)
+
+
+def test_spins_turn_a_grain_slower_as_it_stretches():
+    """A grain that only turns has the kinetic energy L Omega/2, with the angular momentum L = I_spin omega."""
+    grain = grow("BA", 100e-9, "q-S", 0)
+    share = spin_share(grain)
+    run = ratd.spin_up(grain, drive="literal", coriolis="exact", angular_acceleration=1e15, timestep_factor=0.2)
+    first_loss = float(ratd.disruption(run)["omega_first_loss"])
+    run = run.isel(record=(run["omega"].values > 0.1 * first_loss) & (run["omega"].values < first_loss))
+    rest = {axis: run.attrs[f"initial_axis_{axis}"] for axis in "bc"}
+    spin_momentum = share * run.attrs["initial_mass"] / 5.0 * (rest["b"] ** 2 + rest["c"] ** 2) * run["omega"].values
+    b, c = (np.append(rest[axis], run[f"axis_{axis}"].values) for axis in "bc")
+    turned = turned_by_spins(np.append(0.0, run["omega"].values), share, b, c)[1:]
+    ratio = 2.0 * run["kinetic_energy"].values / spin_momentum / turned
+    assert np.median(ratio) == pytest.approx(1.0, abs=0.02) and ratio[turned.argmax()] == pytest.approx(1.0, abs=0.02)
+    assert turned.max() < share * run["omega"].values[turned.argmax()] / 1.4  # it has stretched
+
+
+def test_only_what_comes_before_the_first_loss_counts():
+    omega = np.array([1e7, 1e8, 2e8, 9e8])
+    run = xr.Dataset(
+        {name: ("record", values) for name, values in {
+            "omega": omega, "axis_b": [1e-7, 1e-7, 3e-7, 1e-7], "axis_c": [2e-7, 2e-7, 4e-7, 2e-7],
+        }.items()}
+    )  # fmt: skip
+    assert literal._fastest(run, 0.1, 8e8) == pytest.approx({"turned": 1e7, "stretched": 1.0})
+    assert literal._fastest(run, 0.1, np.nan) == pytest.approx({"turned": 9e7, "stretched": 1.0})
 
 
 def test_exponents_are_found_in_what_follows_the_law():

@@ -1,4 +1,4 @@
-"""A solid grain under the printed equations, the drive literal: how it turns, and where it parts."""
+"""A grain under the printed equations, the drive literal: how it turns, and where a solid one parts."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -14,6 +14,33 @@ def spin_share(grain):
     """`ratd.ensemble.spin_share` of a grain about its axis a_1."""
     moments, _ = principal_axes(grain.position, grain.mass, grain.radius)
     return ensemble.spin_share(grain.radius, grain.material.density, moments[0])
+
+
+def turned_by_spins(omega, share, axis_b, axis_c):
+    """Angular velocity in the inertial frame of a grain that nothing but its spins turns (exact Coriolis term).
+
+    Parameters
+    ----------
+    omega : array_like, shape (n,)
+        Of the frame [rad/s].
+    share : float
+        From `spin_share`, of the grain at rest.
+    axis_b, axis_c : array_like, shape (n,)
+        Middle and longest semi-axis [m]; the first is that at rest.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n,)
+        [rad/s], I_spin omega/I_1.
+
+    Notes
+    -----
+    The spins' missing Euler term gives the grain the angular momentum I_spin omega, whatever its shape. The moment of
+    inertia I_1 = M/5 (b^2 + c^2) grows where the grain stretches, and it then turns slower, as long as it keeps its
+    mass.
+    """
+    moment = np.square(axis_b) + np.square(axis_c)
+    return share * np.asarray(omega) * moment[0] / moment
 
 
 def solid_omega(threshold, share, acceleration, timestep):

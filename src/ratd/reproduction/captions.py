@@ -26,16 +26,18 @@ CAPTIONS = {
         "holds. The dots end before the line does: a contact of LAMMPS ends at the greatest pull."
     ),
     "literal": (
-        "The drive literal with two forms of its Coriolis term: the omega at which a quarter of the mass is lost. A "
-        "marker is a run; shape and colour tell the type, the face the size. Left, the Coriolis term at the "
-        "velocity half a step before: this omega over q = (d omega/dt / dt)^(1/3), against q over the omega of the "
-        "same mark in the consistent model. Solid lines: what a solid grain gives, one for each grain, in the "
-        "colour of its type. The dotted line is the median of the markers: all would lie on it if omega were "
-        "proportional to q, with the exponent 1/3 of d omega/dt. Right, the exact Coriolis term: this omega against "
-        "that of the consistent model over the share of the spins in the moment of inertia, at which a grain that "
-        "is turned by its spins alone would part. Dashed line: equal.\n\n"
+        "The drive literal with two forms of its Coriolis term. A marker is a run; shape and colour tell the type, the "
+        "face the size. Left, the Coriolis term at the velocity half a step before: the omega at which a quarter of "
+        "the mass is lost over q = (d omega/dt / dt)^(1/3), against q over the omega of the same mark in the "
+        "consistent model. Solid lines: what a solid grain gives, one for each grain, in the colour of its type. The "
+        "dotted line is the median of the markers: all would lie on it if omega were proportional to q, with the "
+        "exponent 1/3 of d omega/dt. Right, the exact Coriolis term: where a grain turns fastest before it loses mass, "
+        "how fast its spins would turn it if it had kept its shape, over the omega of the first loss in the consistent "
+        "model, against the factor by which its moment of inertia has grown. On the dashed line it turns as fast as "
+        "in the consistent model.\n\n"
         "What to see: on the left, that the markers follow the lines of the solid grains, down to the right, and "
-        "not the dotted one; on the right, how far the markers scatter about the dashed line."
+        "not the dotted one; on the right, that the markers rise with the dashed line: grains that stretch, BA most "
+        "of all, need more omega."
     ),
     "calibration": (
         "Where the mass of grains of the cell of Fig. 4 starts to fall with the drive literal, against d omega/dt "

@@ -11,7 +11,7 @@ from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
 from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import PM, whole_nm
-from ratd.reproduction.paper import GRAINS, PRINTED
+from ratd.reproduction.paper import GRAINS, MOST, PRINTED
 from ratd.reproduction.text import (
     NOTHING,
     Answer,
@@ -33,8 +33,6 @@ STAGNATES = 0.05
 """Change of the mean porosity from `SPLIT` on that counts as none."""
 COMPACT = 3.0
 """Fractal dimension above which a fit means nothing: that of a solid body."""
-MOST = (0.025, 0.975)
-"""Quantiles between which 95 % of our grains lie."""
 OF_FIG_1 = {"N_mon": "n_monomers", "N_con": "n_contacts", "a_out [nm]": "enclosing_radius"}
 """What Fig. 1 tells of each grain -> column of the table of grains."""
 

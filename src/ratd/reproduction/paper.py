@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from ratd.ensemble import PAPER_MEAN_RADIUS
 from ratd.figures.figure10 import PAPER_ERROR
 
-__all__ = ["ABOUT", "GRAINS", "PRINTED", "Printed"]
+__all__ = ["ABOUT", "GRAINS", "MOST", "PRINTED", "Printed"]
 
 NEAR, ROUGHLY = "within a quarter", "within a factor of 2"
 ABOUT = {"grains": "the grains as grown", "spin-up": "the spin-up", "other": "other numbers of the text"}
@@ -61,6 +61,8 @@ GRAINS = {
     ("BAM2", 500): (1814, 5546, 845.2),
 }
 """The nine grains of Fig. 1; which material they are of is not printed."""
+MOST = (0.025, 0.975)
+"""Quantiles between which 95 % of our grains lie, with which those of Fig. 1 are compared."""
 
 _GROWN = {
     "porosity_BA": Printed(

@@ -173,7 +173,8 @@ def _figures(data, pictures, captions):
                 "“Ours” is the grain that is drawn, of another seed than the paper's; the range is that of all grown "
                 "grains of the type and size. N_con follows from N_mon and the type, and N_mon, on the whole, from the "
                 "distribution of radii, which was chosen for it. Printed values outside the range: "
-                f"{', '.join(outside) or 'none'}."
+                f"{', '.join(outside) or 'none'}. The paper lets monomers migrate in a random direction, as here; what "
+                "a_out is when they migrate to the nearest place stands in docs/validation.md (Growth)."
             )
     return parts
 

@@ -1,4 +1,4 @@
-"""Growth: porosity and contacts of aggregates of equal monomers against an independent generator, and isotropy.
+"""Growth: aggregates of equal monomers against an independent generator, isotropy, and the two ways to migrate.
 
 Arrivals: the second monomer of many pairs comes in alone on the first, so that its straight line is known from its
 place and its direction. Directions and places should be uniform over the sphere, squared impact parameters uniform up
@@ -8,14 +8,14 @@ to that of a grazing hit.
 import numpy as np
 
 from ratd import growth
-from ratd.growth import grow_with_radii
+from ratd.growth import MIGRATIONS, grow, grow_with_radii
 from ratd.materials import equilibrium_compression, get_material, reduced_radius
 from ratd.validation.tables import table_kind
 
 MONOMER_RADIUS = 20e-9
 """Any will do: the form of aggregates of equal monomers depends on it by the compression of the contacts only."""
 COLUMNS = {
-    "study": ("", "aggregates: one aggregate; arrivals: one monomer that comes in on another"),
+    "study": ("", "aggregates: of equal monomers; grains: as in the ensemble; arrivals: one monomer on another"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
     "migration": ("", "where a monomer rolls to"),
     "n_monomers": ("1", "monomers"),
@@ -32,7 +32,7 @@ COLUMNS = {
     **{f"direction_{axis}": ("1", f"{axis} component of the direction of an arrival") for axis in "xyz"},
     **{f"place_{axis}": ("1", f"{axis} component of the direction to where an arrival ended") for axis in "xyz"},
 }
-KIND = table_kind("growth", "Aggregates of equal monomers", COLUMNS)
+KIND = table_kind("growth", "Growth", COLUMNS)
 EXPECTED_POROSITY = {
     ("BA", 32): 0.79, ("BA", 128): 0.845, ("BA", 256): 0.849, ("BA", 512): 0.850,
     ("BAM1", 32): 0.64, ("BAM1", 128): 0.72, ("BAM1", 256): 0.75, ("BAM1", 512): 0.75,
@@ -88,12 +88,12 @@ def arrival(radius, material, seed):
 
 
 def compute(settings, progress=None):
-    """Grow aggregates of equal monomers, or let monomers come in on one other.
+    """Grow aggregates of equal monomers or grains as in the ensemble, or let monomers come in on one other.
 
     Parameters
     ----------
     settings : dict
-        material, and either arrivals (number), or type, monomers (number), seeds (number).
+        material, and either arrivals (number), or type, seeds (number), and monomers (number) or a_eff [m].
     progress : callable, optional
         Called with a sentence.
 
@@ -102,7 +102,8 @@ def compute(settings, progress=None):
     list of dict
         Rows of `COLUMNS`.
     """
-    rows = arrivals(settings) if "arrivals" in settings else aggregates(settings)
+    grown = grains if "a_eff" in settings else aggregates
+    rows = arrivals(settings) if "arrivals" in settings else grown(settings)
     if progress is not None:
         progress(f"{len(rows)} {rows[0]['study']}")
     return rows
@@ -132,24 +133,35 @@ def aggregates(settings):
     for seed in range(settings["seeds"]):
         radius = np.full(settings["monomers"], MONOMER_RADIUS)
         grain = grow_with_radii(settings["type"], radius, settings["material"], seed, migration="nearest")
-        direction = grain.position[grain.contacts[:, 0]] - grain.position[grain.contacts[:, 1]]
-        direction /= np.linalg.norm(direction, axis=1)[:, None]
-        square = (direction**2).mean(axis=0)
-        rows.append(
-            empty_row("aggregates")
-            | dict(
-                type=settings["type"],
-                migration="nearest",
-                n_monomers=grain.n_monomers,
-                seed=seed,
-                n_contacts=grain.n_contacts,
-                porosity=grain.shape.porosity,
-                enclosing_radius=grain.enclosing_radius,
-                a_eff=grain.effective_radius,
-                fractal_dimension=grain.shape.fractal_dimension,
-                square_x=square[0],
-                square_y=square[1],
-                square_z=square[2],
-            )
-        )
+        rows.append(_row("aggregates", grain, settings["type"], seed, "nearest"))
     return rows
+
+
+def grains(settings):
+    """Rows of `COLUMNS`, one a grain with the radii of the ensemble, grown with each of `ratd.growth.MIGRATIONS`."""
+    kind, a_eff, material = (settings[name] for name in ("type", "a_eff", "material"))
+    return [
+        _row("grains", grow(kind, a_eff, material, seed, migration=migration), kind, seed, migration)
+        for migration in MIGRATIONS
+        for seed in range(settings["seeds"])
+    ]
+
+
+def _row(study, grain, kind, seed, migration):
+    direction = grain.position[grain.contacts[:, 0]] - grain.position[grain.contacts[:, 1]]
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    square = (direction**2).mean(axis=0)
+    return empty_row(study) | dict(
+        type=kind,
+        migration=migration,
+        n_monomers=grain.n_monomers,
+        seed=seed,
+        n_contacts=grain.n_contacts,
+        porosity=grain.shape.porosity,
+        enclosing_radius=grain.enclosing_radius,
+        a_eff=grain.effective_radius,
+        fractal_dimension=grain.shape.fractal_dimension,
+        square_x=square[0],
+        square_y=square[1],
+        square_z=square[2],
+    )

@@ -10,7 +10,7 @@ import numpy as np
 
 from ratd.growth import grow
 from ratd.marks import disruption
-from ratd.solid import solid_omega, spin_share
+from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -27,6 +27,8 @@ COLUMNS = {
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "omega_end": ("rad s-1", "angular velocity at the end of the run"),
     **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+    "turned": ("rad s-1", "greatest angular velocity that its spins give the grain before it loses mass; exact only"),
+    "stretched": ("1", "I_1 over that at rest when it turns so fast"),
 }
 KIND = table_kind("literal", "The literal drive", COLUMNS)
 REFERENCE = {"epsilon": 0.02, "timestep_factor": 0.05}
@@ -90,6 +92,9 @@ def compute(settings, progress=None):
 def _row(grain, share, **how):
     run = spin_up(grain, **how)
     marks = disruption(run)
+    fastest = dict.fromkeys(("turned", "stretched"), np.nan)
+    if how["drive"] == "literal" and run.attrs["coriolis"] == "exact":
+        fastest = _fastest(run, share, float(marks["omega_first_loss"]))
     return dict(
         drive=how["drive"],
         coriolis=run.attrs["coriolis"],
@@ -102,4 +107,14 @@ def _row(grain, share, **how):
         cut_bound=run.attrs["cut_bound"],
         omega_end=float(run["omega"][-1]),
         **{name: float(marks[name]) for name in MARKS},
+        **fastest,
     )
+
+
+def _fastest(run, share, first_loss):
+    """Greatest `ratd.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then."""
+    whole = ~(run["omega"].values >= first_loss)  # all of a run without a loss
+    omega, b, c = (run[name].values[whole] for name in ("omega", "axis_b", "axis_c"))
+    turned = turned_by_spins(omega, share, b, c)
+    k = np.argmax(turned)
+    return {"turned": float(turned[k]), "stretched": float(share * omega[k] / turned[k])}

@@ -120,6 +120,13 @@ class Plan:
             }
             for kind, number in product(("BA", "BAM1", "BAM2"), own["monomers"])
         }  # fmt: skip
+        migrating = own["migrations"]
+        pieces |= {
+            f"{kind}_{size}nm": {
+                "material": own["material"], "type": kind, "a_eff": size * NM, "seeds": migrating["seeds"]
+            }
+            for kind, size in product(migrating["types"], migrating["sizes_nm"])
+        }  # fmt: skip
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 
     def _energy(self, own):

@@ -1,11 +1,13 @@
-"""Show the form of aggregates of equal monomers."""
+"""Show the form of aggregates, and that monomers arrive evenly."""
 
 import numpy as np
 from scipy.stats import kstest
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, empty, logarithmic, new_figure, styled
 from ratd.markdown import markdown_table, measured
+from ratd.reproduction.paper import GRAINS, MOST, PRINTED
 from ratd.statistics import mean_of
+from ratd.units import NM
 from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY
 
 LIMIT = 1.36
@@ -98,6 +100,41 @@ def _tell_arrivals(values):
     )
 
 
+def _tell_migrations(table):
+    """Paragraphs on both ways to migrate, beside the enclosing radii of Fig. 1 and the porosities of Fig. 2."""
+    rows, held = [], {}
+    for (kind, nm, migration), part in table.groupby(["type", np.rint(table["a_eff"] / NM).astype(int), "migration"]):
+        if (kind, nm) not in GRAINS:
+            continue
+        printed, most = GRAINS[kind, nm][2], PRINTED[f"porosity_{kind}"].value[1]
+        low, median, high = part["enclosing_radius"].quantile([MOST[0], 0.5, MOST[1]]) / NM
+        porosity = mean_of(part["porosity"])
+        held.setdefault((kind, migration), []).append((low <= printed <= high, porosity[0] <= most))
+        rows.append(
+            [kind, f"{nm} nm", migration, len(part), f"{printed:g}", f"{median:.0f} ({low:.0f}–{high:.0f})",
+             int((part["enclosing_radius"] >= printed * NM).sum()), f"{most:g}", measured(*porosity)]
+        )  # fmt: skip
+    if not rows:
+        return []
+    header = [
+        "type", "size", "migration", "grains", "a_out printed [nm]", "a_out [nm]", "as large or larger",
+        "porosity printed, up to", "porosity",
+    ]  # fmt: skip
+    counts = [
+        "{} {}, {} and {} of {}".format(kind, migration, *np.sum(own, axis=0), len(own))
+        for (kind, migration), own in held.items()
+    ]
+    return [
+        "Grains of Fig. 1 with the radii of the ensemble and with both ways to migrate: in a random direction, as the "
+        "paper says and as everywhere outside this section, and to the nearest place. a_out is the radius of the "
+        "smallest sphere around all monomers, median and range of 95 % of the grains; behind it the number of grains "
+        "that are at least as large as the printed one. The porosity is a mean, beside the greatest one of Fig. 2.",
+        markdown_table(header, rows),
+        f"In how many sizes the printed a_out lies in the range, and the mean porosity within Fig. 2: "
+        f"{'; '.join(counts)}.",
+    ]
+
+
 def tell(table):
     """The section of the report, Markdown."""
     rows, values = [], uniform_values(table)
@@ -124,6 +161,7 @@ def tell(table):
             "Means with standard errors over the aggregates. `off` is the difference of the porosities over both "
             "errors. For isotropic growth the mean squares of the components of the contacts' directions are 1/3 each.",
             markdown_table(header, rows),
+            *_tell_migrations(table[table["study"] == "grains"]),
             *([_tell_arrivals(values)] if len(values["place, z"]) else []),
         ]
     )
