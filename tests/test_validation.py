@@ -12,7 +12,7 @@ from scipy.stats import kstest
 import ratd
 from ratd import schema
 from ratd.growth import grow
-from ratd.markdown import markdown_table, measured
+from ratd.markdown import markdown_table, measured, measured_range
 from ratd.materials import MATERIALS
 from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
@@ -435,6 +435,7 @@ def test_median_and_its_error():
 def test_numbers_in_words():
     assert measured(1.01349, 0.0241) == "1.013 ± 0.024"
     assert measured(123.4, 20.0) == "123 ± 20"
+    assert measured_range(median_of([1.0, 2.0, 3.0])).endswith(" (1.32–2.68)") and measured_range(median_of([])) == "–"
     assert measured(0.5, np.nan) == "0.5" and measured(np.nan, 1.0) == "–"
     assert markdown_table(["a", "b"], [[1, 2]]).splitlines() == ["| a | b |", "| --- | --- |", "| 1 | 2 |"]
     text = report(["## A\n"], extent="quick", results="results/validation", command="make it")

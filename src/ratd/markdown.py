@@ -15,6 +15,12 @@ def measured(value, error):
     return f"{value:.{digits}f} ± {error:.{digits}f}"
 
 
+def measured_range(found):
+    """A median of `ratd.statistics.median_of` with its error and the range of 68 %, "1.02 ± 0.03 (0.98–1.05)"."""
+    value = measured(found["median"], found["error"])
+    return f"{value} ({found['low']:.2f}–{found['high']:.2f})" if found["n"] else value
+
+
 def markdown_table(header, rows):
     """A table in Markdown.
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ratd.drives import SPIN_UP_LAWS
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured
+from ratd.markdown import markdown_table, measured, measured_range
 from ratd.spinup import EPSILON, FIRST_LOSS
 from ratd.statistics import median_of
 from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
@@ -139,7 +139,7 @@ def _table(statistics, name, scale=1.0):
         cells = []
         for mark in MARKS:
             s = statistics[mark][k]
-            cells.append(f"{measured(s['median'], s['error'])} ({s['low']:.2f}–{s['high']:.2f})" if s["n"] else "–")
+            cells.append(measured_range(s))
         rows.append([f"{entry['x'] * scale:g}", *cells, entry["broken"]])
     return markdown_table([name, *MARKS, "runs that broke down"], rows)
 

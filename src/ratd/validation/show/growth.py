@@ -5,6 +5,7 @@ from scipy.stats import kstest
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, empty, logarithmic, new_figure, styled
 from ratd.markdown import markdown_table, measured
+from ratd.reproduction.bounds import whole_nm
 from ratd.reproduction.paper import GRAINS, MOST, PRINTED
 from ratd.statistics import mean_of
 from ratd.units import NM
@@ -103,7 +104,7 @@ def _tell_arrivals(values):
 def _tell_migrations(table):
     """Paragraphs on both ways to migrate, beside the enclosing radii of Fig. 1 and the porosities of Fig. 2."""
     rows, held = [], {}
-    for (kind, nm, migration), part in table.groupby(["type", np.rint(table["a_eff"] / NM).astype(int), "migration"]):
+    for (kind, nm, migration), part in table.groupby(["type", whole_nm(table), "migration"]):
         if (kind, nm) not in GRAINS:
             continue
         printed, most = GRAINS[kind, nm][2], PRINTED[f"porosity_{kind}"].value[1]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured
+from ratd.markdown import markdown_table, measured, measured_range
 from ratd.solid import solid_omega
 from ratd.statistics import median_of
 from ratd.validation.literal import EXACT_END, MARKS, REFERENCE
@@ -125,7 +125,7 @@ def draw(table):
 def tell(table):
     """The section of the report, Markdown."""
     rows = with_reference(table)
-    explicit = rows[rows["coriolis"] == "explicit"]
+    explicit, exact = (rows[rows["coriolis"] == term] for term in ("explicit", "exact"))
     accelerations = explicit["angular_acceleration"]
     parts = explicit["scale"] * explicit["spin_share"] / explicit[f"true_{MARK}"]
     law = [_law(rows, mark) for mark in MARKS]
@@ -181,9 +181,9 @@ def tell(table):
                     "stretched",
                     "turns",
                 ],
-                _spins(rows[rows["coriolis"] == "exact"]),
+                _spins(exact),
             ),
-            _stretched(rows[rows["coriolis"] == "exact"]),
+            _stretched(exact),
         ]
     )
 
@@ -199,7 +199,7 @@ def _law(rows, mark):
             cells.append(measured(s["median"], s["error"]))
     for scale in ("scale", f"solid_{mark}"):
         s = median_of(used[mark] / used[scale], used["grain"])
-        cells.append(_range(s))
+        cells.append(measured_range(s))
     return cells
 
 
@@ -229,12 +229,12 @@ def _spins(exact):
     """Rows of the table of the exact term."""
     lines = []
     for (kind, a_eff), part in exact.groupby(["type", "a_eff"]):
-        lost = part[part["omega_first_loss"].notna()]
-        over = lost["omega_first_loss"] / lost["true_omega_first_loss"]
-        values = (over, lost["unstretched"], lost["stretched"], lost["turns"])
-        found = [median_of(value, lost["grain"]) for value in values]
+        over = part["omega_first_loss"] / part["true_omega_first_loss"]
+        values = (over, part["unstretched"], part["stretched"], part["turns"])
+        found = [median_of(value, part["grain"]) for value in values]
+        lost = f"{part['omega_first_loss'].count()} of {len(part)}"
         lines.append(
-            [kind, f"{a_eff * 1e9:.0f}", f"{len(lost)} of {len(part)}", f"{part['spin_share'].median():.4f}"]
+            [kind, f"{a_eff * 1e9:.0f}", lost, f"{part['spin_share'].median():.4f}"]
             + [measured(each["median"], each["error"]) for each in found]
         )
     return lines
@@ -248,7 +248,7 @@ def _stretched(exact):
     parts = []
     for kind, part in lost.groupby("type"):
         values = (median_of(part[name], part["grain"]) for name in ("turns", "unstretched"))
-        parts.append("{} {}, {}".format(kind, *map(_range, values)))
+        parts.append("{} {}, {}".format(kind, *map(measured_range, values)))
     rate = lost["spin_share"] * lost["angular_acceleration"] / lost["turned"] ** 2
     pairs = [part.sort_values("angular_acceleration")["turns"] for _, part in lost.groupby("grain") if len(part) == 2]
     change = median_of([pair.iloc[1] / pair.iloc[0] for pair in pairs])
@@ -258,11 +258,5 @@ def _stretched(exact):
         "angular velocity of a grain rises with epsilon = s d omega/dt/Omega² of "
         f"{rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {REFERENCE['epsilon']:g}, on which "
         "their omega depends by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
-        f"{_range(change)} times the slower one. What is left of the differences from 1 is not explained."
+        f"{measured_range(change)} times the slower one. What is left of the differences from 1 is not explained."
     )
-
-
-def _range(found):
-    """Median with error, and the range of 68 % of the values."""
-    value = measured(found["median"], found["error"])
-    return f"{value} ({found['low']:.2f}–{found['high']:.2f})" if found["n"] else value

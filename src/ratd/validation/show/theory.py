@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured
+from ratd.markdown import markdown_table, measured_range
 from ratd.statistics import median_of
 from ratd.validation.theory import MARKS
 
@@ -53,7 +53,7 @@ def tell(table):
         for name in ESTIMATES:
             for mark in MARKS:
                 s = median_of(part[mark] / part[name])
-                cells.append(f"{measured(s['median'], s['error'])} ({s['low']:.2f}–{s['high']:.2f})")
+                cells.append(measured_range(s))
         rows.append(cells)
     header = ["type", "grains"] + [f"{mark}/{name}" for name in ESTIMATES for mark in MARKS]
     both = np.log(table[["omega_disr", "cut_bound", "midplane"]]).dropna()
