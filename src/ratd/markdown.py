@@ -1,8 +1,13 @@
-"""Numbers and tables in Markdown."""
+"""Words, numbers and tables in texts and titles."""
 
 import numpy as np
 
-__all__ = ["markdown_table", "measured"]
+__all__ = ["markdown_table", "measured", "measured_range", "plural"]
+
+
+def plural(n, word):
+    """Such as '1 grain', '30 grains'."""
+    return f"{n} {word}" if n == 1 else f"{n} {word}s"
 
 
 def measured(value, error):

@@ -4,7 +4,8 @@ import numpy as np
 
 from ratd.calibration import MARKS, ONSET, PRINTED_STEP
 from ratd.errors import InputError
-from ratd.figures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, plural, styled
+from ratd.figures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, styled
+from ratd.markdown import plural
 
 LOOK = {
     "omega_first_loss": {"color": "#0072B2", "marker": "o", "mfc": "none", "ms": 7},

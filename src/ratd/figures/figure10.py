@@ -5,7 +5,8 @@ from matplotlib.lines import Line2D
 
 from ratd.ensemble import sort_cells
 from ratd.errors import InputError
-from ratd.figures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, plural, styled
+from ratd.figures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
+from ratd.markdown import plural
 
 PAPER_ERROR = 0.018
 """Greatest error that the paper finds against Eq. 35 (Appendix A)."""

@@ -11,12 +11,12 @@ from ratd.figures.style import (
     nanometres,
     new_figure,
     offsets,
-    plural,
     size_limits,
     sizes_label,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 
 PANELS = (
     ("n_monomers", r"number of monomers $N_\mathrm{mon}$", "log"),

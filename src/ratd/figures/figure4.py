@@ -11,11 +11,11 @@ from ratd.figures.style import (
     drive_text,
     logarithmic,
     new_figure,
-    plural,
     power_of_ten,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 from ratd.marks import LOSS, disruption
 from ratd.units import NM
 

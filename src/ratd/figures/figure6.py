@@ -13,10 +13,10 @@ from ratd.figures.style import (
     drive_text,
     empty,
     new_figure,
-    plural,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 from ratd.units import NM
 
 SIZES = (200e-9, 350e-9, 500e-9)

@@ -17,12 +17,12 @@ from ratd.figures.style import (
     nanometres,
     new_figure,
     offsets,
-    plural,
     size_limits,
     sizes_label,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 from ratd.materials import get_material
 
 BOUND = {"lw": 0.7, "ls": (0, (3, 2)), "ms": 2.8, "mfc": "white", "mew": 0.6}

@@ -13,12 +13,12 @@ from ratd.figures.style import (
     mean_and_range,
     nanometres,
     new_figure,
-    plural,
     size_limits,
     sizes_label,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 from ratd.materials import get_material
 from ratd.tensile import SCALINGS, predictions
 from ratd.units import NM

@@ -13,12 +13,12 @@ from ratd.figures.style import (
     logarithmic,
     nanometres,
     new_figure,
-    plural,
     size_limits,
     sizes_label,
     styled,
     type_style,
 )
+from ratd.markdown import plural
 from ratd.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.units import NM, PS
 

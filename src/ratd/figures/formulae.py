@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ratd.errors import InputError
-from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, nanometres, new_figure, plural, styled, type_style
+from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, nanometres, new_figure, styled, type_style
 from ratd.formula_table import OWN, formula_effects
+from ratd.markdown import plural
 from ratd.parameters import MARKS
 
 TEXT = {

@@ -302,11 +302,6 @@ def power_of_ten(values):
     return exponent, rf"$10^{{{exponent}}}$ "
 
 
-def plural(n, word):
-    """Such as '1 grain', '30 grains'."""
-    return f"{n} {word}" if n == 1 else f"{n} {word}s"
-
-
 def drive_text(drive):
     """How the drive is named in a title."""
     return f"drive: {drive}" if drive else "drive not stated"

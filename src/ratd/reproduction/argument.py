@@ -3,10 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from ratd.figures.style import plural
 from ratd.formula_table import FORMULAE, OWN
 from ratd.laws.tangential import sliding_limit, sliding_stiffness
-from ratd.markdown import markdown_table
+from ratd.markdown import markdown_table, plural
 from ratd.materials import equilibrium_contact_radius, pull_off_force, reduced_radius
 from ratd.reproduction.bounds import by_type_and_size, median_and_range, ratios, table3_omega, whole_nm
 from ratd.reproduction.text import number, with_error

@@ -5,7 +5,7 @@ import numpy as np
 from ratd.beyond import SPLIT, slopes
 from ratd.ensemble import cell_statistics
 from ratd.figures.figure10 import relative_error
-from ratd.figures.style import plural
+from ratd.markdown import plural
 from ratd.parameters import MARKS
 from ratd.reproduction import course, shapes
 from ratd.reproduction.bounds import printed_slopes, table3_omega

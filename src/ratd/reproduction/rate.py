@@ -4,8 +4,7 @@ import numpy as np
 
 from ratd.calibration import PRINTED_STEP, printed_acceleration, step_ratios
 from ratd.ensemble import cell_of
-from ratd.figures.style import plural
-from ratd.markdown import markdown_table
+from ratd.markdown import markdown_table, plural
 from ratd.parameters import MARKS
 from ratd.parameters import OWN as AS_IT_IS
 from ratd.reproduction.bounds import median_and_range, ratios, sizes_of, table3_omega, whole_nm

@@ -5,8 +5,7 @@ import numpy as np
 from ratd.beyond import SPLIT, cross_validation, slopes
 from ratd.composition import table1, table2
 from ratd.ensemble import cell_of, size_key
-from ratd.figures.style import plural
-from ratd.markdown import markdown_table
+from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown
 from ratd.reproduction.argument import lammps_over_ratd
 from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes

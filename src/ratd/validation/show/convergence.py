@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd.drives import SPIN_UP_LAWS
-from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured, measured_range
+from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured, measured_range, plural
 from ratd.spinup import EPSILON, FIRST_LOSS
 from ratd.statistics import median_of
 from ratd.validation.convergence import MARKS, UNSTABLE_STEPS

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured
+from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured, plural
 from ratd.statistics import median_of
 
 FIRST_ORDER = (

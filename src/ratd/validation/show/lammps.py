@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured
+from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured, plural
 from ratd.statistics import median_of
 from ratd.validation.lammps import CODES, COMPARISONS, MARKS, TURNING, threshold
 from ratd.validation.peer_lammps import DIFFERENCES

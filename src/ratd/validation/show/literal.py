@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured, measured_range
+from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured, measured_range, plural
 from ratd.solid import solid_omega
 from ratd.statistics import median_of
 from ratd.validation.literal import EXACT_END, MARKS, REFERENCE

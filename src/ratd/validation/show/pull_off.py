@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, nanometres, new_figure, plural, styled
-from ratd.markdown import markdown_table
+from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
+from ratd.markdown import markdown_table, plural
 
 LOOK = {"damped": ("#0072B2", "damped, from equilibrium"), "undamped": ("#D55E00", r"undamped, from $\delta = 0$")}
 EQ35 = np.sqrt(5.0 / 9.0)

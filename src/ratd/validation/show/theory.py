@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, plural, styled
-from ratd.markdown import markdown_table, measured_range
+from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
+from ratd.markdown import markdown_table, measured_range, plural
 from ratd.statistics import median_of
 from ratd.validation.theory import MARKS
 
