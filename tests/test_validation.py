@@ -181,10 +181,11 @@ def test_ratios_are_to_the_finest_run_of_the_same_grain():
     assert np.isnan(show_convergence.coarsest(statistics[2:]))
 
 
-def test_a_grain_for_slow_spin_ups_is_spun_up_with_its_own_epsilon_alone():
-    settings = SMALL | {"production_timestep_factor": 0.1, "epsilon_fine": [0.2, 0.1]}
+@pytest.mark.parametrize("study", convergence.EPSILON_ALONE)
+def test_a_grain_for_slow_spin_ups_is_spun_up_with_its_own_epsilon_alone(study):
+    settings = SMALL | {"production_timestep_factor": 0.1, study: [0.2, 0.1]}
     rows = convergence.compute(settings)
-    assert [(row["study"], row["epsilon"]) for row in rows] == [("epsilon_fine", 0.2), ("epsilon_fine", 0.1)]
+    assert [(row["study"], row["epsilon"]) for row in rows] == [(study, 0.2), (study, 0.1)]
     assert all(row["omega_first_loss"] > 0.0 for row in rows)
 
 
@@ -456,6 +457,10 @@ def test_plan_names_every_piece_once():
     assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
     fine = full["fine_BAM1_300nm_2"]
     assert fine["a_eff"] == pytest.approx(300e-9) and fine["epsilon_fine"] and "step_epsilon" not in fine
+    assert full["large_BAM1_450nm_2"] | {"epsilon_large": None} == {
+        "production_timestep_factor": TIMESTEP_FACTOR, "material": "co-S", "epsilon_large": None, "type": "BAM1",
+        "a_eff": pytest.approx(450e-9), "seed": 2,
+    }  # fmt: skip
     for check in ("theory", "energy"):
         for piece in plan.pieces["full"][check].values():
             assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)

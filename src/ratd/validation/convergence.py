@@ -18,7 +18,7 @@ from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 COLUMNS = {
-    "study": ("", "what is varied: epsilon, epsilon_fine, timestep_factor, law, xi_c or T_vis"),
+    "study": ("", "what is varied: epsilon, epsilon_fine, epsilon_large, timestep_factor, law, xi_c or T_vis"),
     "damping": ("", "treatment of the damping"),
     "law": ("", "spin-up law"),
     "outcome": ("", "how the run ended"),
@@ -33,6 +33,8 @@ COLUMNS = {
     **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
 }
 KIND = table_kind("convergence", "Convergence of the marks of disruption", COLUMNS)
+EPSILON_ALONE = ("epsilon_fine", "epsilon_large")
+"""Studies of grains for which nothing but epsilon is varied."""
 UNSTABLE_STEPS = 5
 """A run is given up after so many times the steps that it should take: something has come loose and flies."""
 
@@ -46,7 +48,7 @@ def cases(settings):
         ``production_timestep_factor`` (where no step is varied), ``epsilon`` (list), ``step_epsilon`` (the epsilon at
         which steps and constants are compared), ``timestep_factor`` {implicit: list, explicit: list}, ``xi_c_nm`` and
         ``viscous_time_ps`` (lists). For a grain that is to tell of a slow spin-up alone:
-        ``production_timestep_factor`` and ``epsilon_fine`` (list), nothing else.
+        ``production_timestep_factor`` and one of `EPSILON_ALONE` (list of epsilon), nothing else.
 
     Returns
     -------
@@ -62,8 +64,9 @@ def cases(settings):
         xi_c=None,
         viscous_time=None,
     )
-    if "epsilon_fine" in settings:
-        return [plain | dict(study="epsilon_fine", epsilon=epsilon) for epsilon in settings["epsilon_fine"]]
+    for study in EPSILON_ALONE:
+        if study in settings:
+            return [plain | dict(study=study, epsilon=epsilon) for epsilon in settings[study]]
     found = [plain | dict(study="epsilon", epsilon=epsilon) for epsilon in settings["epsilon"]]
     for damping, factors in settings["timestep_factor"].items():
         found += [plain | dict(study="timestep_factor", timestep_factor=f, damping=damping) for f in factors]

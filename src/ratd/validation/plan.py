@@ -88,9 +88,9 @@ class Plan:
                 own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
             )
         }
-        for grains in own["fine"]:
-            once = production | {"material": grains["material"], "epsilon_fine": grains["epsilon"]}
-            pieces |= {f"fine_{name}": piece for name, piece in _each_grain([grains], once).items()}
+        for study, grains in ((study, grains) for study in ("fine", "large") for grains in own[study]):
+            once = production | {"material": grains["material"], f"epsilon_{study}": grains["epsilon"]}
+            pieces |= {f"{study}_{name}": piece for name, piece in _each_grain([grains], once).items()}
         return pieces
 
     def _production(self, kind):
