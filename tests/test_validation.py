@@ -412,6 +412,8 @@ def test_only_what_comes_before_the_first_loss_counts():
     )  # fmt: skip
     assert literal._fastest(run, 0.1, 8e8) == pytest.approx({"turned": 1e7, "stretched": 1.0})
     assert literal._fastest(run, 0.1, np.nan) == pytest.approx({"turned": 9e7, "stretched": 1.0})
+    run["omega"][0] = 0.0
+    assert np.isnan(list(literal._fastest(run, 0.1, 5e7).values())).all()
 
 
 def test_exponents_are_found_in_what_follows_the_law():

@@ -31,8 +31,9 @@ COLUMNS = {
     "stretched": ("1", "I_1 over that at rest when it turns so fast"),
 }
 KIND = table_kind("literal", "The literal drive", COLUMNS)
-REFERENCE = {"epsilon": 0.02, "timestep_factor": 0.05}
-"""Run of the consistent drive that the others are compared with."""
+REFERENCE = {"timestep_factor": 0.05}
+"""Run of the consistent drive that the others are compared with, at the epsilon of production of the type."""
+NOT_KNOWN = {"turned": np.nan, "stretched": np.nan}
 EXPLICIT_END, EXACT_END = 1.25, 3.0
 """Runs go on to so many times the omega at which a solid grain parts."""
 
@@ -92,7 +93,7 @@ def compute(settings, progress=None):
 def _row(grain, share, **how):
     run = spin_up(grain, **how)
     marks = disruption(run)
-    fastest = dict.fromkeys(("turned", "stretched"), np.nan)
+    fastest = NOT_KNOWN
     if how["drive"] == "literal" and run.attrs["coriolis"] == "exact":
         fastest = _fastest(run, share, float(marks["omega_first_loss"]))
     return dict(
@@ -112,9 +113,14 @@ def _row(grain, share, **how):
 
 
 def _fastest(run, share, first_loss):
-    """Greatest `ratd.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then."""
+    """Greatest `ratd.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then.
+
+    NaN where the only record before the loss is that of the grain at rest.
+    """
     whole = ~(run["omega"].values >= first_loss)  # all of a run without a loss
     omega, b, c = (run[name].values[whole] for name in ("omega", "axis_b", "axis_c"))
     turned = turned_by_spins(omega, share, b, c)
     k = np.argmax(turned)
+    if not turned[k] > 0.0:
+        return NOT_KNOWN
     return {"turned": float(turned[k]), "stretched": float(share * omega[k] / turned[k])}

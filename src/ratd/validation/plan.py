@@ -88,9 +88,10 @@ class Plan:
                 own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
             )
         }
-        for study, grains in ((study, grains) for study in ("fine", "large") for grains in own[study]):
-            once = production | {"material": grains["material"], f"epsilon_{study}": grains["epsilon"]}
-            pieces |= {f"{study}_{name}": piece for name, piece in _each_grain([grains], once).items()}
+        for name in ("fine", "large"):
+            for grains in own[name]:
+                once = production | {"material": grains["material"], f"epsilon_{name}": grains["epsilon"]}
+                pieces |= {f"{name}_{grain}": piece for grain, piece in _each_grain([grains], once).items()}
         return pieces
 
     def _production(self, kind):

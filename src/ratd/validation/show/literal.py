@@ -5,8 +5,9 @@ import numpy as np
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
 from ratd.markdown import markdown_table, measured, measured_range, plural
 from ratd.solid import solid_omega
+from ratd.spinup import EPSILON
 from ratd.statistics import median_of
-from ratd.validation.literal import EXACT_END, MARKS, REFERENCE
+from ratd.validation.literal import EXACT_END, MARKS
 
 MARK = "omega_mass_75"
 LAW = 1 / 3
@@ -252,11 +253,12 @@ def _stretched(exact):
     rate = lost["spin_share"] * lost["angular_acceleration"] / lost["turned"] ** 2
     pairs = [part.sort_values("angular_acceleration")["turns"] for _, part in lost.groupby("grain") if len(part) == 2]
     change = median_of([pair.iloc[1] / pair.iloc[0] for pair in pairs])
+    paces = ", ".join(f"{EPSILON[kind]:g} ({kind})" for kind in dict.fromkeys(lost["type"]))
     return (
         "“turns” over all sizes, with the range of 68 % of the runs, and behind it “unstretched”: "
         f"{'; '.join(parts)}. So stretching is why more omega is needed where the two numbers of a type differ. The "
         "angular velocity of a grain rises with epsilon = s d omega/dt/Omega² of "
-        f"{rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {REFERENCE['epsilon']:g}, on which "
-        "their omega depends by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
+        f"{rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {paces}, on which their omega depends "
+        "by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
         f"{measured_range(change)} times the slower one. What is left of the differences from 1 is not explained."
     )
