@@ -1,5 +1,7 @@
 """``README.md`` and the figures, from the CSV files that are there."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 
@@ -89,6 +91,50 @@ def quote(out, readme):
         part.write_text(f"{before}{MARKS[0]}\n{_goals(out)}\n{MARKS[1]}{after}", encoding="utf-8")
 
 
+class Goal(NamedTuple):
+    """What was aimed at and what was found.
+
+    Attributes
+    ----------
+    what, unit : str
+    value, limit : float
+    greatest : bool
+        Whether the limit is the greatest value that meets the goal, else the least.
+    low, high : float, optional
+        Where a projected value may lie; None for a measured one.
+    """
+
+    what: str
+    unit: str
+    value: float
+    limit: float
+    greatest: bool
+    low: float | None = None
+    high: float | None = None
+
+    def off(self, value):
+        """By what factor a value misses the goal; 1 and less where it meets it."""
+        return value / self.limit if self.greatest else self.limit / value
+
+    @property
+    def verdict(self):
+        """Whether the goal is met."""
+        nearest, farthest = sorted(self.off(end) for end in (self.low or self.value, self.high or self.value))
+        if farthest <= 1.0:
+            return "met"
+        if nearest <= 1.0:
+            return "left open"
+        if self.low is None:
+            return f"missed by a factor of {nearest:.2f}"
+        return f"missed by a factor of {nearest:.2f} to {farthest:.2f}"
+
+    @property
+    def found(self):
+        """The value, with its range where it is projected."""
+        text = f"{self.value:.3g}"
+        return text if self.low is None else f"projected {text} ({self.low:.3g}–{self.high:.3g})"
+
+
 def goals(out):
     """What was aimed at and what was measured.
 
@@ -99,48 +145,47 @@ def goals(out):
 
     Returns
     -------
-    list of tuple
-        What, its unit, measured value, limit, whether the limit is the greatest value (else the least). What was not
-        measured is left out.
+    list of Goal
+        What was not measured is left out.
     """
     data, small, runs = _read(out, "kernel"), _read(out, "small"), _read(out, "cost_runs")
     paper, growth, overhead = _read(out, "cost_paper"), _read(out, "scaling"), _read(out, "pipeline")
     found = []
     for (name, motion), case in [] if data is None else data.groupby(["aggregate", "motion"], sort=False):
         own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
-        found.append((f"kernel, {name} {motion}", "ns per contact and step", own, 17.0, True))
+        found.append(Goal(f"kernel, {name} {motion}", "ns per contact and step", own, 17.0, True))
         ratio = pair_ratios(case)
         if len(ratio):
-            found.append((f"LAMMPS over ratd, {name} {motion}", "times", float(np.median(ratio)), 10.0, False))
+            found.append(Goal(f"LAMMPS over ratd, {name} {motion}", "times", float(np.median(ratio)), 10.0, False))
     if small is not None:
         slowest = small.groupby(["aggregate", "motion"])["us_per_step"].median().max()
-        found.append((f"a step of {small['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True))
+        found.append(Goal(f"a step of {small['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True))
     if runs is not None:
         largest = runs[runs["size_nm"] == runs["size_nm"].max()]
         name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
-        found.append((name, "s", largest["growth_seconds"].max(), 0.5, True))
+        found.append(Goal(name, "s", largest["growth_seconds"].max(), 0.5, True))
     for row in [] if paper is None else paper.itertuples():
         law = f"drive {row.drive}, {row.pace}, f = {row.timestep_factor:g}"
-        found.append((f"{row.grains} grains, {law}", "core-hours", row.core_hours, 48.0, True))
+        found.append(Goal(f"{row.grains} grains, {law}", "core-hours", row.core_hours, 48.0, True, *_projected(row)))
     if overhead is not None:
         share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
         largest = overhead["size_nm"].max()
-        found.append((f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True))
+        found.append(Goal(f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True))
     if growth is not None:
         paper_sized = growth[growth["monomers"] <= 3000]
-        found.append(("memory of a job, up to 3000 monomers", "MB", paper_sized["peak_bytes"].max() / 1e6, 400.0, True))
+        peak = paper_sized["peak_bytes"].max() / 1e6
+        found.append(Goal("memory of a job, up to 3000 monomers", "MB", peak, 400.0, True))
     return found
 
 
 def _goals(out):
     rows = []
-    for what, unit, value, limit, greatest in goals(out):
-        off = value / limit if greatest else limit / value
-        verdict = "met" if off <= 1.0 else f"missed by a factor of {off:.2f}"
-        rows.append([what, f"{'at most' if greatest else 'at least'} {limit:g} {unit}", f"{value:.3g}", verdict])
+    for goal in goals(out):
+        least = "at most" if goal.greatest else "at least"
+        rows.append([goal.what, f"{least} {goal.limit:g} {goal.unit}", goal.found, goal.verdict])
     if not rows:
         return ""
-    return table(["what", "goal", "measured", ""], rows) + "\n" + "\n".join(_machines(out))
+    return table(["what", "goal", "found", ""], rows) + "\n" + "\n".join(_machines(out))
 
 
 def _machines(out):
@@ -325,6 +370,18 @@ def draw_kernel(data, small, path):
     save(figure, path)
 
 
+def _projected(row):
+    """Core-hours [h], low and high, if all cells not run in full were off together by the scatter of those that were.
+
+    None for both where nothing is known of the scatter.
+    """
+    scatter = row.full_to_projected_scatter
+    if not np.isfinite(scatter):
+        return None, None
+    rest = (1.0 - row.part_run_in_full) * row.core_hours
+    return tuple(row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
+
+
 def _cost(out):
     cells, totals, runs = _read(out, "cost_cells"), _read(out, "cost_paper"), _read(out, "cost_runs")
     if runs is None:
@@ -344,11 +401,12 @@ def _cost(out):
             if row.cells_compared > 1
             else "Not enough cells were run in full to tell how good the projection is."
         )
-        scatter = row.full_to_projected_scatter
-        low, high = row.core_hours, row.core_hours
-        if np.isfinite(scatter):
-            rest = (1.0 - row.part_run_in_full) * row.core_hours
-            low, high = (row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
+        low, high = _projected(row)
+        span = (
+            ""
+            if low is None
+            else f" ({low:.1f} to {high:.1f} if all cells not run in full were off by that scatter together)"
+        )
         missing = f"**{row.cells_missing} cells are missing: their runs failed.** " if row.cells_missing else ""
         seeds = f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
         how = (
@@ -360,8 +418,7 @@ def _cost(out):
         )
         words.append(
             f"**Drive `{row.drive}`, {row.pace}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
-            f"core-hours** for {row.grains} grains ({low:.1f} to {high:.1f} if all cells not run in full were off by "
-            f"that scatter together). {how}{missing}{compared} {seeds}"
+            f"core-hours** for {row.grains} grains{span}. {how}{missing}{compared} {seeds}"
             f"Without the correction, first seeds only: {row.core_hours_uncorrected:.1f}. Of the total, "
             f"{100 * row.part_run_in_full:.0f} % belong to cells whose grain was run in full.\n"
         )

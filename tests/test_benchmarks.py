@@ -138,9 +138,9 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
 
     assert report.goals(tmp_path) == []
     (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
-    ((what, unit, value, limit, greatest),) = report.goals(tmp_path)
-    assert "up to 100 nm" in what and (unit, limit, greatest) == ("%", 10.0, True)
-    assert value == pytest.approx(10.0)
+    (goal,) = report.goals(tmp_path)
+    assert "up to 100 nm" in goal.what and (goal.unit, goal.limit, goal.greatest) == ("%", 10.0, True)
+    assert goal.value == pytest.approx(10.0)
     readme = tmp_path / "own.md"
     readme.write_text(f"before\n{report.MARKS[0]}old\n{report.MARKS[1]}after\n")
     for _ in range(2):
@@ -151,6 +151,24 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     readme.write_text("nothing\n")
     with pytest.raises(FileError, match="to write between"):
         report.quote(tmp_path, readme)
+
+
+@pytest.mark.parametrize(
+    ("greatest", "value", "span", "found", "verdict"),
+    [
+        (True, 40.0, (), "40", "met"),
+        (True, 60.0, (), "60", "missed by a factor of 1.20"),
+        (False, 40.0, (), "40", "missed by a factor of 1.25"),
+        (True, 40.0, (35.0, 45.0), "projected 40 (35–45)", "met"),
+        (True, 51.0, (45.0, 60.0), "projected 51 (45–60)", "left open"),
+        (True, 80.0, (60.0, 100.0), "projected 80 (60–100)", "missed by a factor of 1.20 to 2.00"),
+    ],
+)
+def test_a_projected_goal_is_judged_by_its_range(greatest, value, span, found, verdict):
+    from benchmarks import report
+
+    goal = report.Goal("cost", "h", value, 50.0, greatest, *span)
+    assert (goal.found, goal.verdict) == (found, verdict)
 
 
 def test_pipeline_makes_the_grains_that_are_made_without_it(results):

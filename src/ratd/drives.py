@@ -129,7 +129,7 @@ def angular_velocity(drive, time):
     -----
     Exponential: Eqs. 24 and 26 with tau_drag = omega_RAT/acceleration.
 
-    Constant epsilon: d omega/dt = epsilon omega^2 above omega_1. Below, where nothing breaks, omega^2 and with it the
+    Constant epsilon: d omega/dt = epsilon omega^2 above omega_1. Below, omega^2 and with it the
     centrifugal stress rise evenly, d omega/dt = epsilon omega_1^3/omega, after a linear start up to `SOFT_START`
     omega_1. That takes half as long as a linear rise to omega_1 with the same rate there.
     """

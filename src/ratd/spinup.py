@@ -52,8 +52,8 @@ TIMESTEP_FACTOR = 0.125
 """What a spin-up takes when it is not told otherwise: within 3 % of the limit of a slow spin-up and a short step
 (docs/validation.md). A grain of no known type takes the least epsilon."""
 FIRST_LOSS = 0.7
-"""Part of the cut bound from which on epsilon is constant: the first monomers leave at 0.67 to 0.86 of the bound
-(medians of BAM1, BAM2 and BA; docs/validation.md)."""
+"""Part of the cut bound from which on epsilon is constant. BA grains mostly lose their first monomers above it, BAM
+grains often below, where the spin-up is faster than epsilon (docs/model.md, The scheme)."""
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
 """Wall time [s] between two checkpoints, and two calls of `progress`."""
