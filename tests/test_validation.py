@@ -11,6 +11,7 @@ from scipy.stats import kstest
 
 import ratd
 from ratd import schema
+from ratd.drives import angular_velocity, make_drive
 from ratd.growth import grow
 from ratd.markdown import markdown_table, measured, measured_range
 from ratd.materials import MATERIALS
@@ -146,7 +147,7 @@ def convergence_rows():
 def test_convergence_of_one_grain(convergence_rows):
     table = pd.DataFrame(convergence_rows)
     text = works(show_convergence, convergence_rows)
-    assert "Medians stay within 3 %" in text
+    assert "Greatest epsilon up to which no run broke down" in text
     step = show_convergence.ratios(table, "timestep_factor")
     implicit = step[step["damping"] == "implicit"]
     np.testing.assert_allclose(implicit["omega_first_loss"], 1.0, atol=0.05)
@@ -210,6 +211,27 @@ def test_slow_spin_ups_have_tables_of_their_own(convergence_rows):
         assert "| BAM1 | 300 | 3 | 1 | 1.02 | 1.12 | – | – |" in words[head + 1]
     assert "| BA | 0.02 | 3 | 1.06, off | 1.06, off | 1.06, off |" in text
     assert "| BAM1 | 0.005 | 3 | 1.02, within | 1.02, within | 1.02, within |" in text
+
+
+def test_large_grains_tell_how_fast_the_spin_up_is_where_they_lose_mass(convergence_rows):
+    """omega below 0.7 of the bound by 2: d omega/dt there is that of the law, 8 times epsilon omega^2."""
+    drive = make_drive("prescribed", omega_1=0.7e8, epsilon=EPSILON["BAM1"])
+    times = np.linspace(0.0, 1.0, 4001) / (drive.epsilon * drive.omega_1)
+    omega, domega = np.array([angular_velocity(drive, time) for time in times]).T
+    for part in (0.35, 0.5, 0.7, 0.9):
+        k = np.searchsorted(omega, part * 1e8)
+        own = domega[k] / (drive.epsilon * omega[k] ** 2)
+        assert show_convergence.haste(part) == pytest.approx(own, rel=5e-3)
+    large = [
+        epsilon_row("epsilon_large", seed, epsilon, omega, 4.5e-7, "BAM1") | {"cut_bound": 2 / 0.7}
+        for seed in range(3)
+        for epsilon, omega in ((0.0025, 0.9375), (0.005, 1.0))
+    ]
+    text = works(show_convergence, convergence_rows + large)
+    without = show_convergence.tell(pd.DataFrame(convergence_rows)).split("\n\n")
+    assert set(without) <= set(text.split("\n\n"))
+    assert "3 large grains at the epsilon of production" in text
+    assert "| BAM1 | 450 | q-S | 3 | 0.0025 | 0.35 | 8 | 1.07 | 1.07 | 1.07 | " in text
 
 
 def test_shift_from_the_limit_is_that_of_the_law_it_is_made_with():
@@ -387,6 +409,18 @@ def test_literal_drive():
     works(show_literal, rows)
 
 
+def test_stretching_explains_only_what_it_changes():
+    rows = [
+        {"type": kind, "grain": seed, "turns": 1.0 + 0.02 * seed, "unstretched": stretched + 0.02 * seed}
+        for kind, stretched in (("BA", 2.0), ("BAM2", 1.01))
+        for seed in range(4)
+    ]
+    table = pd.DataFrame(rows)
+    other = "the two numbers agree within two standard errors."
+    assert show_literal._why(table) == f"Stretching is why BA grains need more omega; in BAM2 {other}"
+    assert show_literal._why(table[table["type"] == "BAM2"]) == f"In BAM2 {other}"
+
+
 def test_spins_turn_a_grain_slower_as_it_stretches():
     """A grain that only turns has the kinetic energy L Omega/2, with the angular momentum L = I_spin omega."""
     grain = grow("BA", 100e-9, "q-S", 0)
@@ -440,6 +474,7 @@ def test_numbers_in_words():
     assert measured(123.4, 20.0) == "123 ± 20"
     assert measured_range(median_of([1.0, 2.0, 3.0])).endswith(" (1.32–2.68)") and measured_range(median_of([])) == "–"
     assert measured(0.5, np.nan) == "0.5" and measured(np.nan, 1.0) == "–"
+    assert measured(0.35, 5e-17) == "0.35"  # the rounding of equal values
     assert markdown_table(["a", "b"], [[1, 2]]).splitlines() == ["| a | b |", "| --- | --- |", "| 1 | 2 |"]
     text = report(["## A\n"], extent="quick", results="results/validation", command="make it")
     assert "make it" in text and "## A" in text and "results/validation/quick" in text

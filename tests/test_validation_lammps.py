@@ -324,6 +324,21 @@ def test_lammps_is_drawn_and_told(tmp_path):
     assert all(difference in text for difference in peer_lammps.DIFFERENCES)
 
 
+def test_thresholds_after_half_of_the_time_are_counted_once():
+    """ratd stands beside both frames of LAMMPS, with the same threshold."""
+    never = (np.nan, np.nan)
+    grain = {"type": "BA", "a_eff": 1e-7, "seed": 0, "mark": "first loss"}
+    codes = [("sudden", "LAMMPS"), ("sudden", lammps.TURNING), ("driven", lammps.TURNING)]
+    end = [grain | {"start": start, "code": code, "ratd": (1.0, 4.0), "LAMMPS": (4.0, 4.0)} for start, code in codes]
+    half = [
+        row | {"ratd": (4.0, 4.0), "LAMMPS": when} for row, when in zip(end, [(4.0, 4.0), never, never], strict=True)
+    ]
+    assert show_lammps._after_half(end, half) == (
+        "Of 3 thresholds of sudden starts 1 are the same after half of the time, 1 higher then (by up to 2.00 times), "
+        "and 1 only reached later."
+    )
+
+
 def test_plan_of_lammps():
     plan = Plan(CONFIG)
     for extent in EXTENTS:

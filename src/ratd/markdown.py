@@ -14,7 +14,7 @@ def measured(value, error):
     """A value with its uncertainty, to two figures of the uncertainty, such as "1.013 ± 0.024"."""
     if not np.isfinite(value):
         return "–"
-    if not np.isfinite(error) or error <= 0:
+    if not 1e-12 * abs(value) < error < np.inf:  # less is the rounding of equal values
         return f"{value:.3g}"
     digits = max(0, 1 - int(np.floor(np.log10(error))))
     return f"{value:.{digits}f} ± {error:.{digits}f}"

@@ -7,7 +7,7 @@ from ratd.figures.style import TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmi
 from ratd.markdown import markdown_table, measured, measured_range, plural
 from ratd.spinup import EPSILON, FIRST_LOSS
 from ratd.statistics import median_of
-from ratd.validation.convergence import MARKS, UNSTABLE_STEPS
+from ratd.validation.convergence import EPSILON_ALONE, MARKS, UNSTABLE_STEPS
 
 GOAL = 0.03
 """Shift of a mark that is allowed."""
@@ -38,7 +38,7 @@ def ratios(table, study, finest=None):
     table : pandas.DataFrame
         Columns of `ratd.validation.convergence.COLUMNS`.
     study : str
-        epsilon, epsilon_fine, timestep_factor, xi_c or T_vis.
+        epsilon, epsilon_fine, epsilon_large, timestep_factor, xi_c or T_vis.
     finest : float, optional
         Value that the others are compared with; default: the least one that the grain has.
 
@@ -49,7 +49,8 @@ def ratios(table, study, finest=None):
         marks, and ``broken``: the integration failed, never ended, or lost mass below `EARLY` times the finest run's
         first loss. Broken runs have NaN for ratios.
     """
-    column = {"T_vis": "viscous_time", "epsilon_fine": "epsilon"}.get(study, study)
+    column = {"T_vis": "viscous_time"} | dict.fromkeys(EPSILON_ALONE, "epsilon")
+    column = column.get(study, study)
     rows = table[table["study"] == study].copy()
     rows["x"] = rows[column]
     rows["grain"] = [
@@ -157,8 +158,8 @@ def tell(table):
     str
         Markdown.
     """
-    fine = table["study"] == "epsilon_fine"
-    every, table = table, table[~fine]
+    every, table = table, table[~table["study"].isin(EPSILON_ALONE)]
+    fine, large = (every["study"] == study for study in EPSILON_ALONE)
     n = len(table[["material", "type", "a_eff", "seed"]].drop_duplicates())
     sizes = ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
     words = [
@@ -186,6 +187,8 @@ def tell(table):
         )
         words += [_cells(rows, mark) for mark in IN_CELLS]
     words += [_production(rows), _limit(rows)]
+    if large.any():
+        words.append(_large(every))
     rows = ratios(table, "timestep_factor")
     for damping, part in rows.groupby("damping", sort=False):
         words.append(f"Step factor, {damping} damping, against the least f with implicit damping:")
@@ -226,19 +229,17 @@ def _production(rows, goal=GOAL):
     here = rows[np.isclose(rows["x"], rows["type"].map(EPSILON))]
     if not len(here):
         return "No run has the epsilon of production."
-    parts = list(here.groupby("type"))
-    if len(parts) > 1:
-        parts.append(("all", here))
     lines = []
-    for kind, part in parts:
-        cells = [kind, f"{EPSILON[kind]:g}" if kind in EPSILON else "", part["grain"].nunique()]
+    for kind, part in here.groupby("type"):
+        cells = [kind, f"{EPSILON[kind]:g}", part["grain"].nunique()]
         for mark in IN_CELLS:
             s = median_of(part[mark], part["grain"])
             cells.append(f"{measured(s['median'], s['error'])}, {within(s, goal)}")
         lines.append(cells)
     return (
-        "Marks at the epsilon of production over those of the slowest run, all sizes of a type together, and whether "
-        f"they are within {100 * goal:g} %, or left open by the standard error:\n\n"
+        "Marks at the epsilon of production over those of the slowest run, all sizes of a type together; within: the "
+        f"shift and one standard error are at most {100 * goal:g} %, off: the shift less one is more, open: neither. "
+        "The slowest run is not yet the limit, of which the next table tells:\n\n"
         + markdown_table(["type", "epsilon", "grains", *IN_CELLS], lines)
     )
 
@@ -271,15 +272,59 @@ def shift_from_limit(rows, mark):
 
 def _limit(rows):
     """A table: shifts at the epsilon of production from the limit of a slow spin-up, extrapolated."""
-    lines = []
-    for kind, part in rows.groupby("type"):
-        found = [shift_from_limit(part, mark) for mark in IN_CELLS]
-        lines.append([kind, *(f"{measured(100 * s['median'], 100 * s['error'])}" for s in found)])
+    lines = [[kind, *_percent(part)] for kind, part in rows.groupby("type")]
     return (
         f"If all shifts go with epsilon^{LAG_POWER:.2g}, as the lag of a grain that yields under its load and has to "
         "be moved apart (docs/model.md, The scheme), the marks at the epsilon of production lie above those of an "
         "infinitely slow spin-up by, in percent, medians over the grains:\n\n"
         + markdown_table(["type", *IN_CELLS], lines)
+    )
+
+
+def _percent(rows):
+    """`shift_from_limit` of each mark of `IN_CELLS`, in percent with its error."""
+    found = (shift_from_limit(rows, mark) for mark in IN_CELLS)
+    return [measured(100 * s["median"], 100 * s["error"]) for s in found]
+
+
+def haste(first_loss):
+    """How many times faster than epsilon a spin-up is where a grain loses its first mass.
+
+    Parameters
+    ----------
+    first_loss : array_like of float
+        omega of the first loss over the cut bound.
+
+    Returns
+    -------
+    array_like of float
+        (d omega/dt)/(epsilon omega^2) of the law of `ratd.drives.angular_velocity` with constant epsilon.
+    """
+    return np.maximum(1.0, FIRST_LOSS / first_loss) ** 3
+
+
+def _large(table):
+    """A paragraph and a table: large grains, which lose their first mass where the spin-up is faster than epsilon."""
+    table = table[table["study"] == "epsilon_large"]
+    rows = ratios(table, "epsilon_large").assign(first=table["omega_first_loss"] / table["cut_bound"])
+    lines = []
+    for (kind, size), part in _by_cell(rows):
+        here = part[np.isclose(part["x"], EPSILON[kind])]
+        found = [here["first"], haste(here["first"]), *(here[mark] for mark in IN_CELLS)]
+        found = [median_of(values, here["grain"]) for values in found]
+        lines.append(
+            [kind, f"{size:g}", ", ".join(dict.fromkeys(part["material"])), part["grain"].nunique()]
+            + [f"{part['x'].min():g}", *(measured(s["median"], s["error"]) for s in found), *_percent(part)]
+        )
+    header = ["type", "size [nm]", "material", "grains", "slowest epsilon", "first loss over the cut bound"]
+    header += ["(d omega/dt)/(epsilon omega²) there", *(f"{mark} over that of the slowest" for mark in IN_CELLS)]
+    return (
+        f"The law has its epsilon from {FIRST_LOSS:g} of the cut bound on. Below, its (d omega/dt)/omega² is epsilon "
+        f"times ({FIRST_LOSS:g} of the bound over omega)³, and large BAM grains lose their first mass there. "
+        f"{plural(rows['grain'].nunique(), 'large grain')} at the epsilon of production of the type, medians over the "
+        "grains: where that is, how fast the spin-up is there, the marks over those of the slowest run of the same "
+        "grain, and by how many percent they lie above those of an infinitely slow one, as above:\n\n"
+        + markdown_table([*header, *(f"{mark} above the limit [%]" for mark in IN_CELLS)], lines)
     )
 
 
@@ -303,14 +348,18 @@ def _laws(table):
     steps = (exponential["steps"] / constant["steps"]).median()
     epsilon = constant["epsilon"].iloc[0]
     return (
-        f"The law of Eq. 24, with epsilon = {epsilon:g} at {FIRST_LOSS:g} of the cut bound, where the first monomers "
-        "leave, against the law that keeps this epsilon from there on: " + ", ".join(parts) + ". "
-        f"The runs under Eq. 24 were ended after at most {UNSTABLE_STEPS} times the steps (median {steps:.1f} times); "
-        "to their end, at hundreds of times the bound, they would take hundreds of times as many."
+        f"The law of Eq. 24, with epsilon = {epsilon:g} at {FIRST_LOSS:g} of the cut bound, against the law that keeps "
+        "this epsilon from there on: " + ", ".join(parts) + ". "
+        f"The runs under Eq. 24 were ended after at most {UNSTABLE_STEPS} times the steps of the other run of the same "
+        f"grain (median {steps:.1f} times), where some had not reached every mark; to their end, at hundreds of times "
+        "the bound, they would take hundreds of times as many."
     )
 
 
 def _recommend(statistics, name):
     """A sentence: up to where each mark stays within the goal."""
-    parts = [f"{mark} {coarsest(entries):g}" for mark, entries in statistics.items()]
-    return f"Medians stay within {100 * GOAL:g} % up to {name} = " + ", ".join(parts) + "."
+    parts = [f"{coarsest(entries):g} for {mark}" for mark, entries in statistics.items()]
+    return (
+        f"Greatest {name} up to which no run broke down and the median over all types, its error left aside, differs "
+        f"from 1 by no more than {100 * GOAL:g} %: {', '.join(parts)}. Single types may differ by more."
+    )

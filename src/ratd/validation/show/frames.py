@@ -79,7 +79,7 @@ def tell(table):
     """The section of the report, Markdown."""
     found, slopes = greatest(table), exponents(table)
     factors = sorted(set(table["timestep_factor"]))
-    rows = []
+    rows, apart = [], []
     for kind, part in found.groupby(level="type"):
         cells = [kind, str(len(slopes[kind])), f"{table['moved'][table['type'] == kind].max():.2g}"]
         for f in factors:
@@ -87,6 +87,8 @@ def tell(table):
             cells.append(f"{values.min():.1e}–{values.max():.1e}" if len(values) > 1 else f"{values.max():.1e}")
         s = median_of(slopes[kind])
         rows.append([*cells, measured(s["median"], s["error"])])
+        if abs(s["median"] - 2.0) > 2.0 * s["error"]:
+            apart.append(kind)
     sections = [
         "## Frames",
         f"{plural(len(slopes), 'grain')} of {table['a_eff'].iloc[0] * 1e9:.0f} nm, free, turning, vibrating, with "
@@ -99,4 +101,10 @@ def tell(table):
     ]
     if slopes.median() < 1.5:
         sections.append(FIRST_ORDER)
+    elif apart:
+        way = table.groupby("type")["moved"].max().min()
+        sections.append(
+            f"{', '.join(apart)}: more than two standard errors from 2. The distances themselves are at most "
+            f"{found.max():.1e} mean radii, while the monomers move by {way:.2g} mean radii and more."
+        )
     return "\n\n".join(sections)

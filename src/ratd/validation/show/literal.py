@@ -241,6 +241,22 @@ def _spins(exact):
     return lines
 
 
+def _why(lost):
+    """A sentence: the types of which stretching changes the outcome."""
+    differ, agree = [], []
+    for kind, part in lost.groupby("type"):
+        turns, unstretched = (median_of(part[name], part["grain"]) for name in ("turns", "unstretched"))
+        apart = abs(unstretched["median"] - turns["median"])
+        (differ if apart > 2.0 * np.hypot(turns["error"], unstretched["error"]) else agree).append(kind)
+    words = []
+    if differ:
+        words.append(f"Stretching is why {' and '.join(differ)} grains need more omega")
+    if agree:
+        words.append(f"in {' and '.join(agree)} the two numbers agree within two standard errors")
+    text = "; ".join(words)
+    return text[0].upper() + text[1:] + "."
+
+
 def _stretched(exact):
     """Paragraphs: how near each type comes to the consistent threshold as it stretches, and what the rate does."""
     lost = exact[exact["turns"].notna()]
@@ -256,8 +272,7 @@ def _stretched(exact):
     paces = ", ".join(f"{EPSILON[kind]:g} ({kind})" for kind in dict.fromkeys(lost["type"]))
     return (
         "“turns” over all sizes, with the range of 68 % of the runs, and behind it “unstretched”: "
-        f"{'; '.join(parts)}. So stretching is why more omega is needed where the two numbers of a type differ. The "
-        "angular velocity of a grain rises with epsilon = s d omega/dt/Omega² of "
+        f"{'; '.join(parts)}. {_why(lost)} The angular velocity of a grain rises with epsilon = s d omega/dt/Omega² of "
         f"{rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {paces}, on which their omega depends "
         "by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
         f"{measured_range(change)} times the slower one. What is left of the differences from 1 is not explained."
