@@ -136,5 +136,9 @@ def test_kernel_compiles_for_a_device(monkeypatch):
     state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=0.05)
     arrays = typeof(Batch([state], 2).device, Purpose.argument)
     arguments = (arrays, types.Array(types.int64, 1, "C"), types.float64, types.boolean)
-    text, _ = device.numba_cuda.compile_ptx(advance.advance_grains.py_func, arguments, cc=(9, 0))
+    kernel = advance.advance_grains
+    bounds = kernel.targetoptions["launch_bounds"]
+    text, _ = device.numba_cuda.compile_ptx(kernel.py_func, arguments, cc=(9, 0), launch_bounds=bounds)
     assert ".target sm_90" in text and "fma.rn.f64" in text
+    # so many threads then fit on a multiprocessor, whatever way the code takes through the linker
+    assert f".maxntid {device.MAX_THREADS}" in text

@@ -51,7 +51,7 @@ def test_environment_of_the_gpu_stands_on_the_other_one_and_is_pinned():
     assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][A-Za-z0-9.]*", line) for line in packages)
     own = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd_gpu.yaml").read_text())["dependencies"][-1]["pip"]
     common = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd.yaml").read_text())["dependencies"][-1]["pip"]
-    assert set(own) - set(common) <= set(packages) and set(common) <= set(own)
+    assert set(own) - set(common) == set(packages) and set(common) <= set(own)
 
 
 def test_environment_of_conda_has_the_same_versions():

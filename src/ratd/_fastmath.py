@@ -1,7 +1,9 @@
 """Roots and reciprocals for the hot loop, from single precision and Newton's rule.
 
 In single precision a division or a root takes a quarter of its time; one step of Newton's rule, or of the next order,
-which are multiplications, brings back what accuracy is needed.
+which are multiplications, brings back what accuracy is needed. The errors that are given hold on a processor. On a GPU
+a division in single precision may be off by 2 units in the last place, by its documentation, and what follows from it
+by up to eight times what is given.
 """
 
 import math

@@ -5,6 +5,11 @@ This is the only module of the package that imports numba's CUDA target. Without
 for tests. The functions of the CPU engine that a kernel calls are compiled for the processor then.
 """
 
+import os
+
+# Says so at each of the few launches of the last grains; there is nothing that a user could do.
+os.environ.setdefault("NUMBA_CUDA_LOW_OCCUPANCY_WARNINGS", "0")
+
 import numba
 import numpy as np
 from numba import cuda as numba_cuda
@@ -12,8 +17,8 @@ from numba import cuda as numba_cuda
 from ratd.errors import InputError
 
 __all__ = [
-    "MAX_THREADS", "MIN_THREADS", "REGISTERS", "SIMULATED", "cuda", "device_function", "fetch", "kernel", "require",
-    "send", "upload",
+    "MAX_THREADS", "MIN_THREADS", "SIMULATED", "cuda", "device_function", "fetch", "kernel", "require", "send",
+    "upload",
 ]  # fmt: skip
 
 SIMULATED = bool(numba.config.ENABLE_CUDASIM)
@@ -66,8 +71,8 @@ else:
 
 MIN_THREADS, MAX_THREADS = (3, 3) if SIMULATED else (32, 512)
 """Threads of a block. The simulation makes each a Python thread, so it gets few."""
-REGISTERS = 128
-"""Registers of a thread: 512 threads then fill the register file of one multiprocessor."""
+DRIVER, CAPABILITY = (13, 0), (7, 5)
+"""Oldest version of CUDA that the driver may have (driver 580), and oldest compute capability that it compiles for."""
 
 
 def device_function(function):
@@ -76,8 +81,8 @@ def device_function(function):
 
 
 def kernel(function):
-    """A kernel."""
-    return numba_cuda.jit(function) if SIMULATED else numba_cuda.jit(max_registers=REGISTERS)(function)
+    """A kernel for blocks of up to `MAX_THREADS` threads, which limits the registers that a thread may take."""
+    return numba_cuda.jit(function) if SIMULATED else numba_cuda.jit(launch_bounds=MAX_THREADS)(function)
 
 
 def require():
@@ -92,12 +97,29 @@ def require():
     if getattr(numba_cuda, "implementation", "Built-in") != "NVIDIA":
         raise InputError("engine is cuda, but the package numba-cuda is missing: install environment-gpu.txt.")
     try:
-        usable = numba_cuda.is_available() and len(numba_cuda.gpus) > 0
-        reason = "no GPU, or no driver for it, was found"
+        reason = _hindrance()
     except Exception as error:  # whatever the driver says, the user needs one sentence
-        usable, reason = False, str(error).strip().splitlines()[-1]
-    if not usable:
+        reason = (str(error).strip().splitlines() or [type(error).__name__])[-1]
+    if reason:
         raise InputError(f"engine is cuda, but {reason}; a GPU of NVIDIA with its driver is needed, or engine: cpu.")
+
+
+def _hindrance():
+    """Why kernels cannot run here, None if they can. Makes no context on the device."""
+    from numba.cuda.cudadrv import driver, nvvm
+
+    if not nvvm.is_available():
+        return "its compiler was not found (environment-gpu.txt installs it)"
+    if not numba_cuda.is_available() or not len(numba_cuda.gpus):
+        return "no GPU, or no driver for it, was found"
+    if driver.get_version() < DRIVER:
+        return "the driver of the GPU is older than 580"
+    gpu = numba_cuda.gpus[0]
+    if tuple(gpu.compute_capability) < CAPABILITY:
+        return f"the GPU has a compute capability below {CAPABILITY[0]}.{CAPABILITY[1]}"
+    if gpu.KERNEL_EXEC_TIMEOUT:
+        return "the GPU drives a display, whose time limit ends long kernels"
+    return None
 
 
 def upload(array):

@@ -30,8 +30,10 @@ __all__ = ["spin_up_many"]
 
 CHECKPOINT_INTERVAL = 120.0
 """Wall time [s] between two checkpoints."""
-SEGMENT = 2**29
-"""Length of a segment in contacts times steps."""
+MOST_SAVING = 20.0
+"""They are made no more often than after so many times what they take."""
+SEGMENT = 2**27
+"""Length of a segment in contacts times steps; the host looks, and a run can be stopped, only in between."""
 STEP_OVERHEAD = 1500
 """What a step costs beside its contacts, in contacts: barriers, and what all threads do alike."""
 ROWS_PER_LAUNCH = 64
@@ -209,6 +211,7 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
             failures.append(f"grain {one.number}: {one.failure}")
         else:
             finished[one.number] = one.run.dataset()
+            one.run.state = None  # with which all arrays of its batch would be kept
             if done is not None:
                 done(one.number, finished[one.number])
 
@@ -234,7 +237,7 @@ def _work(at_work, note):
     for place, one in enumerate(at_work):
         one.run.state = batch.view(place)
     active = list(range(len(at_work)))
-    saved = time.monotonic()
+    saved, interval = time.monotonic(), CHECKPOINT_INTERVAL
     while active and 2 * len(active) >= len(at_work):
         for place in active:
             at_work[place].tell(batch, place)
@@ -246,13 +249,16 @@ def _work(at_work, note):
             if at_work[place].over:
                 note(at_work[place])
         active = [place for place in active if not at_work[place].over]
-        if time.monotonic() - saved > CHECKPOINT_INTERVAL:
+        if time.monotonic() - saved > interval:
+            begun = time.monotonic()
             for place in active:
                 one = at_work[place]
                 if one.checkpoint is not None and not one.relaxing and place not in full:
                     one.run.state = batch.state(place)
                     one.run.save(one.checkpoint)
             saved = time.monotonic()
+            # the device waits meanwhile
+            interval = max(CHECKPOINT_INTERVAL, MOST_SAVING * (saved - begun))
         if full:
             break
     for place in active:
@@ -265,11 +271,12 @@ def _work(at_work, note):
 def _launch(batch, at_work, active):
     """Run one segment of each active grain: one launch for each number of threads, all at the same time."""
     run = at_work[active[0]].run
-    launches = []
-    for threads in sorted({at_work[place].threads for place in active}, reverse=True):
-        places = np.array([place for place in active if at_work[place].threads == threads])
-        stream = 0 if SIMULATED else cuda.stream()
-        numbers = upload(places)
-        launches.append((stream, numbers))  # kept until the kernel is done
-        advance_grains[len(places), threads, stream](batch.device, numbers, run.timestep_factor, run.implicit)
+    groups = {}
+    for place in active:
+        groups.setdefault(at_work[place].threads, []).append(place)
+    # A copy waits for all kernels that were launched before it, hence all copies first.
+    groups = [(threads, upload(np.array(groups[threads]))) for threads in sorted(groups, reverse=True)]
+    streams = [0 if SIMULATED else cuda.stream() for _ in groups]  # kept until the kernels are done
+    for (threads, numbers), stream in zip(groups, streams, strict=True):
+        advance_grains[numbers.size, threads, stream](batch.device, numbers, run.timestep_factor, run.implicit)
     cuda.synchronize()

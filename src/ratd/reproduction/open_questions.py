@@ -5,6 +5,7 @@ import numpy as np
 from ratd.beyond import (
     MONOMER_CLASSES,
     PREDICTORS,
+    SPLIT,
     cross_validation,
     fragment_shares,
     oblate_counts,
@@ -13,8 +14,11 @@ from ratd.beyond import (
 )
 from ratd.fragmentation import STAGES
 from ratd.markdown import markdown_table
-from ratd.reproduction.bounds import printed_slopes
+from ratd.reproduction.bounds import printed_slopes, whole_nm
 from ratd.reproduction.text import NOTHING, interval, number, with_error
+from ratd.spinup import FIRST_LOSS
+from ratd.units import NM
+from ratd.validation.show.convergence import haste
 
 JUSTIFIED = 0.1
 """Probability below which a power law is not given (Clauset et al. 2009)."""
@@ -91,8 +95,29 @@ def flattening_section(data):
             "strength that depends on nothing but material gives -1; an asymptotic limit, of which the paper speaks "
             "above 300 nm, gives 0, which its own fit does not have.",
             markdown_table(head, rows),
+            *_pace(data),
         ]
     )
+
+
+def _pace(data):
+    """A paragraph: how fast the spin-up is where grains of the drive `prescribed` lose their first mass."""
+    table = data.tables.get("prescribed")
+    if table is None or data.plan.spin_up_of("prescribed")["epsilon"] is None:
+        return []
+    times = table.assign(haste=haste(table["omega_first_loss"] / table["cut_bound"]), nm=whole_nm)
+    parts = []
+    for kind, part in times.groupby("type", sort=False):
+        of_size = part.groupby("nm")["haste"].median()
+        sizes = [size for size in (round(SPLIT / NM), of_size.index.max()) if size in of_size.index]
+        parts.append(f"{kind} " + ", ".join(f"{number(of_size[size])} ({size:g} nm)" for size in dict.fromkeys(sizes)))
+    return [
+        f"The spin-up of the drive `prescribed` has its epsilon from {FIRST_LOSS:g} of the cut bound on and is faster "
+        "below (docs/model.md, The scheme). Where grains lose their first mass (d omega/dt)/omega² is, in medians, so "
+        f"many times epsilon: {'; '.join(parts)}. A faster spin-up of BAM grains gives a greater omega; by how much, "
+        "docs/validation.md (Convergence) tells, also of large grains. Where this number grows with size, the fall of "
+        "omega_disr with size comes out too shallow, not too steep."
+    ]
 
 
 def fragment_section(data):
