@@ -49,8 +49,8 @@ RELAXATION_STEPS = 50
 RELAXATION_ROUNDS = 20_000
 EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.005}
 TIMESTEP_FACTOR = 0.125
-"""What a spin-up takes when it is not told otherwise: for grains of up to 300 nm within about 3 % of the limit of a slow
-spin-up and a short step, for larger BAM1 grains farther above it (docs/validation.md). A grain of no known type takes
+"""What a spin-up takes when it is not told otherwise. Grains up to 300 nm are then within about 3 % of the limit of a
+slow spin-up and a short step, larger BAM1 grains farther above it (docs/validation.md). A grain of no known type takes
 the least epsilon."""
 FIRST_LOSS = 0.7
 """Part of the cut bound from which on epsilon is constant. BA grains mostly lose their first monomers above it, BAM
