@@ -415,10 +415,10 @@ def test_stretching_explains_only_what_it_changes():
         for kind, stretched in (("BA", 2.0), ("BAM2", 1.01))
         for seed in range(4)
     ]
-    table = pd.DataFrame(rows)
+    found = show_literal._by_type(pd.DataFrame(rows))
     other = "the two numbers agree within two standard errors."
-    assert show_literal._why(table) == f"Stretching is why BA grains need more omega; in BAM2 {other}"
-    assert show_literal._why(table[table["type"] == "BAM2"]) == f"In BAM2 {other}"
+    assert show_literal._why(found) == f"Stretching is why BA grains need more omega; in BAM2 {other}"
+    assert show_literal._why({"BAM2": found["BAM2"]}) == f"In BAM2 {other}"
 
 
 def test_spins_turn_a_grain_slower_as_it_stretches():

@@ -49,10 +49,9 @@ def ratios(table, study, finest=None):
         marks, and ``broken``: the integration failed, never ended, or lost mass below `EARLY` times the finest run's
         first loss. Broken runs have NaN for ratios.
     """
-    column = {"T_vis": "viscous_time"} | dict.fromkeys(EPSILON_ALONE, "epsilon")
-    column = column.get(study, study)
+    columns = {"T_vis": "viscous_time"} | dict.fromkeys(EPSILON_ALONE, "epsilon")
     rows = table[table["study"] == study].copy()
-    rows["x"] = rows[column]
+    rows["x"] = rows[columns.get(study, study)]
     rows["grain"] = [
         f"{m} {t} {a * 1e9:.0f} {s:.0f}" for m, t, a, s in rows[["material", "type", "a_eff", "seed"]].values
     ]
@@ -305,7 +304,6 @@ def haste(first_loss):
 
 def _large(table):
     """A paragraph and a table: large grains, which lose their first mass where the spin-up is faster than epsilon."""
-    table = table[table["study"] == "epsilon_large"]
     rows = ratios(table, "epsilon_large").assign(first=table["omega_first_loss"] / table["cut_bound"])
     lines = []
     for (kind, size), part in _by_cell(rows):

@@ -241,11 +241,18 @@ def _spins(exact):
     return lines
 
 
-def _why(lost):
-    """A sentence: the types of which stretching changes the outcome."""
+def _by_type(lost):
+    """Type -> what `median_of` gives of ``turns`` and of ``unstretched``, dict of lists."""
+    return {
+        kind: [median_of(part[name], part["grain"]) for name in ("turns", "unstretched")]
+        for kind, part in lost.groupby("type")
+    }
+
+
+def _why(found):
+    """A sentence: the types of which stretching changes the outcome, from `_by_type`."""
     differ, agree = [], []
-    for kind, part in lost.groupby("type"):
-        turns, unstretched = (median_of(part[name], part["grain"]) for name in ("turns", "unstretched"))
+    for kind, (turns, unstretched) in found.items():
         apart = abs(unstretched["median"] - turns["median"])
         (differ if apart > 2.0 * np.hypot(turns["error"], unstretched["error"]) else agree).append(kind)
     words = []
@@ -262,18 +269,16 @@ def _stretched(exact):
     lost = exact[exact["turns"].notna()]
     if not len(lost):
         return "No grain lost mass in these runs."
-    parts = []
-    for kind, part in lost.groupby("type"):
-        values = (median_of(part[name], part["grain"]) for name in ("turns", "unstretched"))
-        parts.append("{} {}, {}".format(kind, *map(measured_range, values)))
+    found = _by_type(lost)
+    parts = ["{} {}, {}".format(kind, *map(measured_range, values)) for kind, values in found.items()]
     rate = lost["spin_share"] * lost["angular_acceleration"] / lost["turned"] ** 2
     pairs = [part.sort_values("angular_acceleration")["turns"] for _, part in lost.groupby("grain") if len(part) == 2]
     change = median_of([pair.iloc[1] / pair.iloc[0] for pair in pairs])
     paces = ", ".join(f"{EPSILON[kind]:g} ({kind})" for kind in dict.fromkeys(lost["type"]))
     return (
         "“turns” over all sizes, with the range of 68 % of the runs, and behind it “unstretched”: "
-        f"{'; '.join(parts)}. {_why(lost)} The angular velocity of a grain rises with epsilon = s d omega/dt/Omega² of "
-        f"{rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {paces}, on which their omega depends "
-        "by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
+        f"{'; '.join(parts)}. {_why(found)} The angular velocity of a grain rises with epsilon = s d omega/dt/Omega² "
+        f"of {rate.min():.1g} to {rate.max():.1g}, that of the consistent runs with {paces}, on which their omega "
+        "depends by a few per cent (Convergence in docs/validation.md); the faster run of a grain gives "
         f"{measured_range(change)} times the slower one. What is left of the differences from 1 is not explained."
     )
