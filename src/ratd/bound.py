@@ -1,8 +1,9 @@
-"""How fast an aggregate can turn at most, without any simulation.
+"""How fast an aggregate can turn if its contacts pull, without any simulation.
 
 Cut the contact graph anywhere. The part cut off, of mass M and with its centre of mass at a distance r from the axis
-of rotation, needs M omega^2 r to stay on its circle, and each contact cut holds at most its pull-off force F_C. So
-every cut gives an omega above which the aggregate as it stands cannot hold together, and the least of them is a bound.
+of rotation, needs M omega^2 r to stay on its circle, and each contact cut pulls with at most its pull-off force F_C.
+So every cut gives an omega above which the pulls of its contacts are not enough, and the least of them is the cut
+bound. It is not strict: contacts also hold sideways and push, which `ratd.firm_bound` counts.
 """
 
 import math
@@ -27,7 +28,7 @@ __all__ = [
 
 
 def cut_bound(grain, axis=None, *, directions=500):
-    """Bound on the angular velocity that an aggregate as it stands can hold.
+    """Angular velocity up to which the pulls of its contacts hold an aggregate as it stands.
 
     Parameters
     ----------
@@ -56,9 +57,10 @@ def cut_bound(grain, axis=None, *, directions=500):
     a BA grain without accidental contacts, the first is the exact minimum over all cuts: the pull on a set of
     monomers is a sum of pulls on branches, no greater than the sum of their magnitudes, so that no set that takes
     several contacts is weaker than the weakest of its branches. With more contacts than a tree has, a cut of another
-    form may be weaker than both families, but what is returned is a bound in any case.
+    form may be weaker than both families.
 
-    It holds for the aggregate as it stands; contacts made while it deforms can raise it.
+    It is meant for the aggregate as it stands; contacts made while it deforms can raise it. A contact that is loaded at
+    a slant holds more than F_C along the load: see `ratd.firm_bound.firm_bound`.
     """
     if not isinstance(directions, (int, np.integer)) or directions < 1:
         raise InputError(f"directions is {directions!r}; it must be a whole number of at least 1.")
@@ -300,7 +302,7 @@ def midplane_bound(grain):
     """Angular velocity at which the mean tension at the mid-plane equals Tatsuuma's tensile strength [rad s-1].
 
     The grain counts as a sphere of its own mass and filling factor, so that a_out = a_eff phi^(-1/3); the monomer
-    radius is the mean radius. An estimate, not a bound in the strict sense of `cut_bound`.
+    radius is the mean radius. An estimate.
 
     Parameters
     ----------

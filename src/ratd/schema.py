@@ -13,7 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import calibration, composition, ensemble, formula_table, fragmentation, marks, pair, parameters, spinup
+from ratd import (
+    calibration,
+    composition,
+    ensemble,
+    firm_bound,
+    formula_table,
+    fragmentation,
+    marks,
+    pair,
+    parameters,
+    spinup,
+)
 from ratd.errors import FileError
 
 FORMAT = 1
@@ -309,6 +320,9 @@ KINDS = {
     ),
     "formulae": Kind("Grains spun up with single formulae as printed", _entries(formula_table.FORMULA_COLUMNS)),
     "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
+    "firm_bounds": Kind(
+        "Bounds from cuts whose contacts hold sideways and push", _entries(firm_bound.FIRM_BOUND_COLUMNS)
+    ),
 }
 """Kind of file -> its layout."""
 
