@@ -75,6 +75,24 @@ def test_a_killed_block_goes_on_and_gives_the_same_bytes(tmp_path):
     assert "2 of them were finished before" in (tmp_path / "job.log").read_text()
 
 
+def test_a_grain_that_fails_does_not_stop_the_others_and_is_named(tmp_path):
+    target = tmp_path / "seeds_0-2.nc"
+    made = []
+
+    def make(seed, checkpoint):
+        if seed == 1:
+            raise RuntimeError("it does not come to rest")
+        made.append(seed)
+        return io.grain_row(make_grain(seed), 1e8)
+
+    with pytest.raises(SystemExit), jobs.Job(make_job(tmp_path, None)) as job:
+        job.block(target, "grains", MATERIALS["q-S"], SEEDS, make)
+    assert made == [0, 2] and not target.exists()
+    last = (tmp_path / "job.log").read_text().splitlines()[-1]
+    assert last.endswith("1 of 3 grains failed, the others are kept: seed 1: it does not come to rest")
+    assert run_block(tmp_path, target) == [1]
+
+
 def test_partial_results_of_other_settings_are_not_used(tmp_path):
     target = tmp_path / "seeds_0-2.nc"
     with pytest.raises(KeyboardInterrupt):

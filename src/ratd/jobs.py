@@ -161,7 +161,12 @@ class Job:
         make : callable
             ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.io`). Below the path `checkpoint` it may
             keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
-            has another name and is never found.
+            has another name and is never found. If it raises RuntimeError the other grains are made all the same.
+
+        Raises
+        ------
+        InputError
+            If grains failed: one sentence with the seed and the reason of each.
         """
         wanted = self._snakemake.wildcards.get("seeds")
         if wanted:
@@ -169,8 +174,19 @@ class Job:
         block = Block(Path(target), material, list(seeds), self.provenance)
 
         def make_all(waiting, done):
+            failed = []
             for number, (block, seed) in enumerate(waiting):
-                done(number, make(seed, block.checkpoint(seed)))
+                try:
+                    row = make(seed, block.checkpoint(seed))
+                except RuntimeError as error:  # of this grain: the others may do
+                    self.log.error(f"seed {seed}: {error}")
+                    failed.append(f"seed {seed}: {error}")
+                else:
+                    done(number, row)
+            if failed:
+                raise InputError(
+                    f"{target}: {len(failed)} of {len(waiting)} grains failed, the others are kept: {'; '.join(failed)}"
+                )
 
         self.blocks([block], kind, make_all)
 
