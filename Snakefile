@@ -10,13 +10,21 @@ from pathlib import Path
 from snakemake.utils import min_version
 
 from ratd import jobs
-from ratd.config import check
+from ratd.config import check, read_yaml
 from ratd.errors import InputError
 from ratd.partial import tidy
 from ratd.reproduction.collected import Collected
 from ratd.reproduction.data import FOLDER
+from ratd.validation.plan import Plan
 
 min_version("9.27")
+
+
+# Snakemake reads it too, but does not say in which line it is no YAML.
+try:
+    read_yaml("config/config.yaml")
+except InputError as error:
+    sys.exit(str(error))
 
 
 configfile: "config/config.yaml"
@@ -25,6 +33,7 @@ configfile: "config/config.yaml"
 try:
     PLAN = check(config)
     COLLECTED = Collected(FOLDER, PLAN)
+    CHECKS = Plan("config/validation.yaml")
 except InputError as error:
     sys.exit(str(error))
 
@@ -94,5 +103,10 @@ rule write_config:
         "workflow/scripts/write_config.py"
 
 
+# What is finished needs no pieces any more: a forced rerun is to compute it anew.
 onsuccess:
+    tidy(PLAN.results)
+
+
+onerror:
     tidy(PLAN.results)

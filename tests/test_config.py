@@ -48,6 +48,13 @@ def test_quick_is_three_of_each():
         ({"sizes_nm": [50, -50]}, "sizes_nm[1] is -50", "above 0"),
         ({"sizes_nm": [0]}, "sizes_nm[0] is 0", "above 0"),
         ({"types": ["BA"], "sizes_nm": [12]}, "sizes_nm[0] is 12", "above 12.6 nm"),
+        ({"sizes_nm": [50, 5000]}, "sizes_nm[1] is 5000", "at most 4089 nm"),
+        ({"growth": {"sigma_ln": 3.0}}, "growth.sigma_ln is 3.0", "at most 2.5"),
+        (
+            {"literal": {"angular_acceleration": "1e14"}},
+            "'1e14' (text for YAML; as a number it is written 1.0e+14)",
+            "0",
+        ),
         ({"sizes_nm": [50, 50]}, "sizes_nm is [50, 50]", "different"),
         ({"sizes_nm": [float("nan")]}, "sizes_nm[0] is nan", "finite"),
         ({"block_size": 0}, "block_size is 0", "1 or more"),

@@ -377,6 +377,17 @@ def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, sa
     assert not (tmp_path / "results").exists()
 
 
+def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    pipeline.write_config(TINY)
+    config = tmp_path / "config" / "config.yaml"
+    config.write_text(config.read_text().replace("block_size: 10\n", "block_size: [10\n"))
+    done = pipeline.run()
+    *_, sentence = [line for line in done.stdout.splitlines() if line]
+    assert done.returncode != 0
+    assert re.match(r"config/config.yaml: line \d+: is not YAML", sentence)
+
+
 @pytest.mark.parametrize(("fewer", "jobs"), [({"drives": ["literal"], "number": 2}, {"grown": 1}), ({"number": 2}, {})])
 def test_figures_show_all_grown_grains_if_these_are_grown_anyway(tmp_path, fewer, jobs):
     """One drive of two leaves some out; where both do, no grain is grown for a figure."""

@@ -505,8 +505,19 @@ def test_plan_names_every_piece_once():
     assert len({(piece["type"], piece["a_eff"], piece["seed"]) for piece in printed.values()}) == len(printed) >= 8
 
 
-def test_plan_names_what_is_missing(tmp_path):
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("docs: quick\nfull: {colour: {}}", "colour"),
+        ("docs: quick\nfull: {theory: {material: q-S, seeds: 1, types: [BA], sizes_nm: 100}}", "of the wrong kind"),
+        ("docs: quick\nfull: [theory]", "of the wrong kind"),
+        ("docs: fast\nfull: {}", "docs is 'fast'; allowed: full, quick"),
+    ],
+)
+def test_plan_names_what_is_wrong(tmp_path, text, said):
     path = tmp_path / "validation.yaml"
-    path.write_text("results: x\ndocs: quick\nfull: {colour: {}}\nquick: {}\nproduction: {}\n")
-    with pytest.raises(ratd.InputError, match="colour"):
+    production = "{epsilon: {BA: 0.02}, timestep_factor: 0.1}"
+    path.write_text(f"results: x\n{text}\nquick: {{}}\nproduction: {production}\n")
+    with pytest.raises(ratd.InputError, match=said) as error:
         Plan(path)
+    assert "validation.yaml" in str(error.value) and "\n" not in str(error.value)

@@ -2,7 +2,7 @@
 
 The layout stands in `config/schema/config.schema.yaml`, where each key says in words what it may hold. Everything
 that a file depends on becomes the settings of its job, and nothing else does: a change of the figures' settings
-concerns the figures only, and a further seed concerns no other block.
+concerns the figures only, and a further seed concerns no other block than one that was not full.
 """
 
 import math
@@ -16,7 +16,7 @@ import yaml
 
 from ratd.errors import InputError
 from ratd.formula_table import DAMPING, FORMULAE
-from ratd.growth import RadiusDistribution, smallest_a_eff
+from ratd.growth import MOST_MONOMERS, RadiusDistribution, smallest_a_eff
 from ratd.materials import MATERIALS, Material, mix
 from ratd.parameters import ways
 from ratd.units import GPA, MJ_PER_M2, NM, PS
@@ -119,7 +119,19 @@ def _sentence(error, layout):
         if "$ref" in part:
             part = layout["$defs"][part["$ref"].rpartition("/")[2]]
         return f"the key {f'{key}.{missing}' if key else missing} is missing; allowed: {part['description']}"
-    return f"{key or 'it'} is {error.instance!r}; allowed: {error.schema.get('description', error.message)}"
+    return (
+        f"{key or 'it'} is {error.instance!r}{_text(error)}; allowed: {error.schema.get('description', error.message)}"
+    )
+
+
+def _text(error):
+    """A hint where a number without a point, such as 1e14, was taken for text, which YAML 1.1 does."""
+    if error.validator != "type" or not isinstance(error.instance, str):
+        return ""
+    try:
+        return f" (text for YAML; as a number it is written {float(error.instance):.1e})"
+    except ValueError:
+        return ""
 
 
 def _dotted(path):
@@ -228,7 +240,13 @@ def check(config, schemas="config/schema"):
         radii = RadiusDistribution(**plan.radii)
     except InputError as error:
         raise InputError(f"config: growth: {error}") from error
+    largest = (MOST_MONOMERS * radii.moment(3)) ** (1 / 3) / NM
     for k, size in enumerate(config["sizes_nm"]):
+        if size > largest:
+            raise InputError(
+                f"config: sizes_nm[{k}] is {size!r}; allowed: at most {math.floor(largest)} nm, the size of "
+                f"{MOST_MONOMERS} monomers"
+            )
         for kind in config["types"]:
             smallest = smallest_a_eff(kind, radii) / NM
             # the size itself has no room for different radii: all monomers would have to be of the smallest one

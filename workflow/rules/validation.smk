@@ -1,8 +1,5 @@
 # Validation: checks of the model, one job an independent piece, one figure and one section of text a check.
-from ratd.validation.plan import EXTENTS, Plan
-
-CHECKS = Plan("config/validation.yaml")
-
+from ratd.validation.plan import EXTENTS
 
 for check in CHECKS.pieces["full"]:
 

@@ -28,7 +28,7 @@ class Plan:
     Raises
     ------
     InputError
-        If a key is missing or a check unknown.
+        If a key is missing, a check unknown, or a value of another kind than in the file that comes with ratd.
     """
 
     def __init__(self, path):
@@ -41,6 +41,13 @@ class Plan:
             }
         except KeyError as error:
             raise InputError(f"{path}: the key {error} is missing or not known; see config/validation.yaml") from None
+        except (TypeError, AttributeError) as error:
+            raise InputError(
+                f"{path}: a value is of the wrong kind ({error}); allowed: lists, mappings and numbers where "
+                "config/validation.yaml as it comes with ratd has them"
+            ) from None
+        if self.docs not in EXTENTS:
+            raise InputError(f"{path}: docs is {self.docs!r}; allowed: {', '.join(EXTENTS)}")
 
     def files(self, extent, check):
         """Files of all pieces of a check.
