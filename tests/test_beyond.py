@@ -154,7 +154,8 @@ def test_shares_of_fragments():
     assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.35, 0.1, 0.25, 0.3])
     assert own["number_share"].tolist() == pytest.approx([0.4, 0.2, 0.2, 0.2])
     assert (own["n_fragments"].iloc[0], own["n_grains"].iloc[0]) == (5, 2)
-    assert fragment_shares(fragments, "disruption")["mass_share"].tolist() == [1, 0, 0, 0]
+    one = fragment_shares(fragments, "disruption")
+    assert one["mass_share"].tolist() == [1, 0, 0, 0] and one["mass_share_error"].isna().all()
     own = fragment_shares(fragments.assign(weight=[0.5, 0.5, 0.5, 1.5, 1.5]), "half").set_index("class")
     assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.425, 0.05, 0.375, 0.15])
     assert own["number_share"].tolist() == pytest.approx([2 / 4.5, 0.5 / 4.5, 1.5 / 4.5, 0.5 / 4.5])

@@ -142,6 +142,9 @@ def test_rows_stand_in_the_order_of_the_paper(table):
     assert list(dict.fromkeys(table["material"])) == ["a-C", "q-S", "co-S"]
     assert list(dict.fromkeys(table["type"])) == ["BA", "BAM1", "BAM2"]
     assert table.groupby(["material", "type"], sort=False)["a_eff"].is_monotonic_increasing.all()
+    half = len(table) // 2
+    parts = [table[:half], table[half:].reset_index(drop=True)]  # whose numbers of rows are the same
+    pd.testing.assert_frame_equal(sort_cells(pd.concat(parts)), table)
 
 
 @pytest.mark.parametrize(

@@ -272,8 +272,8 @@ def fragment_shares(fragments, stage, seed=0):
     Returns
     -------
     pandas.DataFrame
-        A row a type and class: mass_share and number_share with `_error`; n_fragments, n_grains (that lost any). Each
-        fragment has the weight of its grain.
+        A row a type and class: mass_share and number_share with `_error`, NaN for one grain; n_fragments, n_grains
+        (that lost any). Each fragment has the weight of its grain.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
@@ -291,7 +291,7 @@ def fragment_shares(fragments, stage, seed=0):
             total = values[drawn].sum(axis=1)
             error = np.std(total / total.sum(axis=1, keepdims=True), axis=0, ddof=1)
             shares[name] = values.sum(axis=0) / values.sum()
-            shares[f"{name}_error"] = error
+            shares[f"{name}_error"] = error if n > 1 else np.full_like(error, np.nan)
         for k, label in enumerate(MONOMER_CLASSES):
             own = {name: float(values[k]) for name, values in shares.items()}
             rows.append({"type": kind, "class": label, **own, "n_fragments": len(part), "n_grains": int(n)})

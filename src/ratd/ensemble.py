@@ -56,7 +56,7 @@ GRAIN_COLUMNS = {
 }
 """Units and meaning of what is known before the spin-up."""
 RUN_COLUMNS = {
-    "drive": ("", "what turns the grain: prescribed, literal or torque"),
+    "drive": ("", "what turns the grain: prescribed or literal"),
     "steps": ("1", "time steps of the spin-up"),
     "timestep": ("s", "first time step of the spin-up"),
     "end_reason": ("", "why the spin-up ended"),
@@ -467,6 +467,7 @@ def sort_cells(table):
     pandas.DataFrame
         Sorted copy with a fresh index. Names that the paper does not have come last, by the alphabet.
     """
+    table = table.reset_index(drop=True)  # of tables put together an index may name several grains
     keys = pd.DataFrame(index=table.index)
     for name, order in (("material", [m for m, _ in TABLE_3]), ("type", [t for _, t in TABLE_3])):
         if name in table:
@@ -478,7 +479,7 @@ def sort_cells(table):
     if "seed" in table:
         keys["seed"] = table["seed"]
     if keys.empty or not len(keys.columns):
-        return table.reset_index(drop=True)
+        return table
     return table.loc[keys.sort_values(list(keys.columns), kind="stable").index].reset_index(drop=True)
 
 

@@ -57,7 +57,7 @@ def parting_omega(a_1, a_2, material, *, epsilon, timestep_factor, damped=True):
         Radii [m].
     material : ratd.Material
     epsilon : float
-        (d omega/dt)/omega^2; omega grows linearly up to half of `force_controlled_omega`.
+        (d omega/dt)/omega^2 from half of `force_controlled_omega` on; below, omega grows as in `ratd.drives`.
     timestep_factor : float
         f of Eq. 31.
     damped : bool
