@@ -20,8 +20,8 @@ from ratd.growth import grow
 from ratd.materials import MATERIALS
 from ratd.reproduction import figures
 from ratd.reproduction.argument import printed_porosity
-from ratd.reproduction.bounds import ratios
-from ratd.reproduction.data import GROWN, Data
+from ratd.reproduction.bounds import ratios, table3_omega
+from ratd.reproduction.data import FIRM_BOUNDS, GROWN, Data
 from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.rate import solid_parts, solid_prediction
 from ratd.reproduction.report import report
@@ -184,6 +184,7 @@ def test_studies_are_told_from_their_columns(folder):
     grains = pd.DataFrame({"type": ["BAM2"] * 4, "omega_disr_ratio": [1.0, 1.1, 1.12, 1.14]})
     grains["omega_mass_75_ratio"] = [1.0, 1.11, 1.11, 1.12]
     grains["viscous_time"] = [5e-12, 9e-12, 9e-12, 9e-12]
+    grains["a_eff"], grains["seed"] = 1e-7, range(4)
     grains["critical_rolling_displacement"] = 2e-10
     data.__dict__["parameters"] = {"prescribed": grains}
     names = ["consistent", *["damping"] * 3]
@@ -279,7 +280,7 @@ def test_what_needs_no_spin_up_is_said_of_all_grown_grains(folder, tmp_path):
     data = Data(str(shutil.copytree(folder, tmp_path / "data")))
     before = report(data, "reproduction")
     assert "figure2" not in data.figures and len(data.grown) == max(map(len, data.tables.values()))
-    more = data.grown.assign(drive="", omega_disr=np.nan)
+    more = data.grown.drop(columns="firm_bound").assign(drive="", omega_disr=np.nan)
     more = pd.concat([more, more.assign(seed=more["seed"] + 100)], ignore_index=True)
     io.write(tmp_path / "data" / GROWN, table_dataset(more, "grain"), "table")
     data = Data(data.folder)
@@ -290,6 +291,25 @@ def test_what_needs_no_spin_up_is_said_of_all_grown_grains(folder, tmp_path):
     assert f"of {known} grains" in text and f"of {known} grains" not in before
     changed = set(text.splitlines()) ^ set(before.splitlines())
     assert not [line for line in changed if "omega_disr, drive `" in line]
+
+
+def test_firm_bounds_are_joined_to_the_grown_grains_and_told(folder, text, tmp_path):
+    data = Data(str(shutil.copytree(folder, tmp_path / "data")))
+    assert data.grown["firm_bound"].isna().all() and "above the firm bound" not in text
+    printed = table3_omega(data.grown)
+    firm = data.grown[["material", "type", "a_eff", "seed"]].assign(firm_bound=printed * 2)
+    firm["seed"] = firm["seed"].astype(float)
+    weak = firm.index[:5]
+    firm.loc[weak, "firm_bound"] /= 4
+    shuffled = firm.sample(frac=1, random_state=1).reset_index(drop=True).rename_axis("entry")
+    attributes = dict.fromkeys(("settings", "config_hash", "code_hash", "inputs", "versions"), "{}")
+    io.write(
+        tmp_path / "data" / FIRM_BOUNDS, shuffled.to_xarray().drop_vars("entry").assign_attrs(attributes), "firm_bounds"
+    )
+    data = Data(data.folder)
+    np.testing.assert_array_equal(data.grown["firm_bound"], firm["firm_bound"])
+    known = printed.notna().sum()
+    assert f"above the firm bound for 5 of {known} grains" in report(data, "reproduction")
 
 
 def test_figures_are_drawn_from_what_is_there(folder):

@@ -16,6 +16,8 @@ from ratd.reproduction.data import Data
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import all_of, lies_in, near
 from ratd.schema import END_REASONS
+from ratd.validation.convergence import MARKS
+from ratd.validation.show.convergence import large_shifts, rate_exponent
 from synthetic_runs import make_run, make_table
 
 ROOT = Path(__file__).parents[1]
@@ -95,6 +97,15 @@ OF_TABLE = [
     ("porosity_change_BAM", lambda t: {"porosity_disr": t["porosity_start"] + 0.05 + noise(t, 0.01)}, True),
     ("porosity_change_BAM", lambda t: {"porosity_disr": t["porosity_start"] - 0.05 + noise(t, 0.01)}, False),
     ("porosity_change_BAM", lambda t: {"porosity_disr": t["porosity_start"] + noise(t, 0.1)}, None),
+    # BAM2 alone falls
+    (
+        "porosity_change_BAM",
+        lambda t: {"porosity_disr": t["porosity_start"] + 0.05 * np.where(t["type"] == "BAM2", -1, 1) + noise(t, 0.01)},
+        False,
+    ),
+    ("porosity_alike", lambda t: {"porosity_disr": 0.5 + noise(t, 0.01)}, True),
+    ("porosity_alike", lambda t: {"porosity_disr": 0.5 + 0.1 * (t["type"] == "BAM1") + noise(t, 0.01)}, False),
+    ("porosity_alike", lambda t: {"porosity_disr": 0.5 + 0.05 * (t["type"] == "BAM1") + noise(t, 0.05)}, None),
     ("order", lambda t: {"omega_disr": np.exp(np.linspace(np.log(2e8), np.log(9e8), len(t)))}, True),
     ("order", lambda t: {"omega_disr": np.exp(np.linspace(np.log(2e7), np.log(9e8), len(t)))}, False),
     ("range", lambda t: {"omega_disr": np.exp(np.linspace(np.log(4e8), np.log(4e9), len(t)))}, True),
@@ -145,8 +156,10 @@ OF_GROWN = [
     ("porosity_slope", lambda t: {"porosity": 0.6 + noise(t, 0.01)}, True),
     ("porosity_slope", lambda t: {"porosity": t["a_eff"] / 1e-6 + noise(t, 0.01)}, False),
     ("porosity_slope", lambda t: {"porosity": 0.55 + np.abs(noise(t, 0.2))}, None),
-    ("porosity_BA", lambda t: {"porosity": 0.6}, True),
-    ("porosity_BA", lambda t: {"porosity": 0.2}, False),
+    ("porosity_BA", lambda t: {"porosity": 0.6 + noise(t, 0.01)}, True),
+    ("porosity_BA", lambda t: {"porosity": 0.2 + noise(t, 0.01)}, False),
+    # a mean just beyond the edge, by less than two errors
+    ("porosity_BA", lambda t: {"porosity": 0.355 + noise(t, 0.05)}, None),
     ("fractal_BA", lambda t: {"fractal_dimension": 2.1}, True),
     ("fractal_BA", lambda t: {"fractal_dimension": 2.7}, False),
     ("fractal_slope", lambda t: {"fractal_dimension": 2 + t["a_eff"] / 1e-6}, True),
@@ -169,6 +182,7 @@ def at_fig_9(key, ratios):
     printed = PRINTED[key]
     column = {"rolling": "critical_rolling_displacement", "viscous": "viscous_time"}[key]
     table = pd.DataFrame({"type": np.repeat(["BA", "BAM2"], len(ratios)), "omega_disr_ratio": np.tile(ratios, 2)})
+    table["a_eff"], table["seed"] = 1e-7, np.tile(np.arange(len(ratios)), 2)
     table = table.assign(critical_rolling_displacement=2e-10, viscous_time=5e-12, omega_mass_75_ratio=1.0)
     table["omega_mass_75_ratio"] = table["omega_disr_ratio"]
     return pd.concat(
@@ -208,6 +222,8 @@ def spun_up(*steps, seeds=4):
     ("key", "runs", "holds"),
     [
         ("whole_01", spun_up((1.01e8, 0.2)), True),
+        ("contacts_01", spun_up((1.01e8, 0.2)), False),
+        ("contacts_01", [run.assign(n_contacts=0.9 * run["n_contacts"]) for run in spun_up((1.01e8, 0.2))], True),
         ("whole_08", spun_up((1.01e8, 0.2)), False),
         ("whole_08", spun_up((0.7e8, 0.99), (1.01e8, 0.2)), True),
         ("whole_10", spun_up((0.7e8, 0.99), (1.01e8, 0.2)), False),
@@ -227,9 +243,56 @@ def test_findings_on_the_course(data, key, runs, holds):
 @pytest.mark.parametrize(("single", "holds"), [(0.9, True), (0.1, False), (0.7, None)])
 def test_single_monomers_of_the_first_half_bound_those_of_all(data, single, holds):
     """0.7 of the first half: between 0.35 and 0.85 of all."""
-    table = pd.DataFrame({"type": "BAM1", "weight": 1.0, "half": True, "fragment_n_monomers": [1, 20]})
+    table = pd.DataFrame({"type": "BAM1", "a_eff": 3e-7, "weight": 1.0, "half": True, "fragment_n_monomers": [1, 20]})
     data.__dict__["fragments"] = {"prescribed": table.assign(mass_fraction=[single, 1 - single])}
     assert verdict(data, "blocks") is holds
+
+
+@pytest.mark.parametrize(("monomers", "holds"), [(3, True), (4, False)])
+def test_a_few_monomers_are_up_to_three(data, monomers, holds):
+    table = pd.DataFrame(
+        {"type": "BA", "a_eff": 3e-7, "weight": 1.0, "half": True, "fragment_n_monomers": [monomers] * 2}
+    )
+    data.__dict__["fragments"] = {"prescribed": table.assign(mass_fraction=0.25)}
+    assert verdict(data, "few") is holds
+
+
+def large_grains(excess):
+    """Marks of BAM1 grains at the epsilon of production, above those of the slowest spin-up by some excess each."""
+    rows = [
+        {"study": "epsilon_large", "material": "q-S", "type": "BAM1", "a_eff": 4.5e-7, "seed": seed, "epsilon": epsilon}
+        | {"damping": "implicit", "outcome": "one contact left"}
+        | dict.fromkeys(MARKS, 1e7 * (1 + (epsilon / 0.005) ** (2 / 3) * own))
+        for seed, own in enumerate(excess)
+        for epsilon in (0.005, 0.005 / 8)
+    ]
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize(
+    ("excess", "holds"),
+    [([0.02, 0.03, 0.02, 0.03], True), ([0.5, 0.52, 0.5, 0.52], False), ([0.1, 0.2, 0.3, 0.1], None)],
+)
+def test_findings_on_the_drag_time(data, monkeypatch, excess, holds):
+    table = large_grains(excess)
+    monkeypatch.setattr(Data, "study", lambda self, name: table if name == "convergence" else None)
+    assert verdict(data, "drag_time") is holds
+
+
+def test_no_large_grain_was_spun_up_slowly(data, monkeypatch):
+    table = large_grains([0.1, 0.1]).assign(study="epsilon")
+    monkeypatch.setattr(Data, "study", lambda self, name: table if name == "convergence" else None)
+    (row,) = [row for row in disrupted.rows(data) if row.key == "drag_time"]
+    assert not row.answers and large_shifts(table) == []
+
+
+def test_the_power_of_the_rate_is_that_of_the_law_of_the_lag():
+    table = large_grains([0.1])
+    ((_, _, shifts),) = large_shifts(table)
+    above = np.log([1 + 0.1 * x ** (2 / 3) for x in (1.01, 0.99)])
+    expected = (above[0] - above[1]) / np.log(1.01 / 0.99)
+    # the shift is one to first order, over the slowest run instead of the limit
+    assert rate_exponent(shifts["omega_disr"])[0] == pytest.approx(expected, rel=0.1)
 
 
 def of_pairs(undamped, damped):
@@ -241,6 +304,9 @@ def of_pairs(undamped, damped):
     ("key", "parted", "holds"),
     [
         ("pairs", ([1.01, 0.99], [1.0, 1.0]), True),
+        ("pairs_trend", ([0.99, 0.991], [1.0, 1.0]), True),
+        ("pairs_trend", ([1.01, 1.011], [1.0, 1.0]), False),
+        ("pairs_trend", ([1.01, 0.99], [1.0, 1.0]), None),
         ("pairs", ([1.01, 0.9], [1.0, 1.0]), False),
         ("pairs", ([1.0, np.nan], [1.0, 1.0]), False),
         ("pairs_damped", ([1.0, 1.0], [1.34, 1.34]), False),

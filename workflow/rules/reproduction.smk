@@ -2,7 +2,8 @@
 # Grains that the data hold already need no results.
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
-from ratd.reproduction.data import FROM_RESULTS, Data
+from ratd.provenance import file_hash
+from ratd.reproduction.data import FIRM_BOUNDS, FROM_RESULTS, STUDIES, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -20,6 +21,15 @@ rule reproduction_data:
             for drive in PLAN.config["drives"]
             for cell, block in COLLECTED.missing(drive)
         ],
+        firm_bounds=(
+            []
+            if COLLECTED.grown and DATA.has(FIRM_BOUNDS)
+            else [
+                f"<results>/firm_bounds/{material}/{type}.nc"
+                for material in PLAN.config["materials"]
+                for type in PLAN.config["types"]
+            ]
+        ),
         grains=rules.figure1.input,
         pairs=[
             f"<results>/pairs/{material}.nc"
@@ -41,17 +51,20 @@ rule reproduction_data:
         runtime=60,
     params:
         code=CODE["reproduction_data"],
-        # what there is of studies and validation, which are not computed for this
+        # what there is of studies and validation, which are not computed for this, with the hash of each file
         settings=lambda w: {
             "config": PLAN.config,
             "studies": {
-                name.format(drive=drive): path
+                name.format(drive=drive): {path: file_hash(path)}
                 for drive in PLAN.config["drives"]
                 for below, name in FROM_RESULTS.items()
                 for path in [f"{PLAN.results}/{below.format(drive=drive)}"]
                 if Path(path).is_file()
             },
-            "validation": CHECKS.existing(CHECKS.docs, ["lammps", "literal"]),
+            "validation": {
+                check: {path: file_hash(path) for path in paths}
+                for check, paths in CHECKS.existing(CHECKS.docs, STUDIES).items()
+            },
             "command": "snakemake --cores 2 reproduction_data --configfile CONFIG",
         },
     message:

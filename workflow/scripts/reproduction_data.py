@@ -5,7 +5,8 @@ from pathlib import Path
 from ratd.config import check
 from ratd.jobs import Job
 from ratd.reproduction.collect import Collection
-from ratd.validation import lammps, literal
+from ratd.reproduction.data import FIRM_BOUNDS
+from ratd.validation import convergence, lammps, literal
 
 with Job(snakemake) as job:
     files, settings = snakemake.input, job.settings
@@ -20,9 +21,11 @@ with Job(snakemake) as job:
         collection.copy(path, f"pairs/{Path(path).name}", f"pairs of Fig. 10, {Path(path).stem}")
     if files.grains:
         collection.grains(files.grains, plan.config["figures"]["figure1"]["seed"])
-    for name, path in settings["studies"].items():
+    for name, (path,) in settings["studies"].items():
         collection.copy(path, name, "a study of the reproduction")
-    for check_of in (lammps, literal):
+    if files.firm_bounds:
+        collection.tables(files.firm_bounds, "firm_bounds", FIRM_BOUNDS, "firm bounds of all grains as grown")
+    for check_of in (lammps, literal, convergence):
         name = check_of.KIND.removeprefix("validation_")
         if settings["validation"].get(name):
             what = f"cases of the check {name} of docs/validation.md"

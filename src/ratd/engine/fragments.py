@@ -133,8 +133,8 @@ def drop_departed(state, fragments):
     """Drop the fragments that have left for good, noting their mass and number of monomers.
 
     A fragment has left when all of it lies outside the sphere around the centre of mass that holds the largest
-    fragment, and its own centre of mass recedes. Free bodies go straight in the inertial frame, so that such a
-    fragment can meet the largest no more.
+    fragment, and its own centre of mass recedes. Centres of mass of free bodies go straight in the inertial frame, so
+    that such a fragment meets the largest no more, unless it is long and reaches back with an end as it turns.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ LOOK = {
     "omega_mass_99": {"color": "#D55E00", "marker": "s", "ms": 3.5},
     "omega_mass_75": {"color": "#009E73", "marker": "^", "mfc": "none", "ms": 4.5},
 }
-SPREAD = 1.035
+SPREAD = 1.014
 """Factor between the places of runs with the same d omega/dt."""
 
 
@@ -30,7 +30,8 @@ def calibration(table, fit):
     Returns
     -------
     matplotlib.figure.Figure
-        The marks of runs with the same d omega/dt stand side by side, in the order of grains and steps.
+        The marks of runs with the same d omega/dt stand side by side about a line at it, in the order of grains and
+        steps.
 
     Raises
     ------
@@ -45,6 +46,8 @@ def calibration(table, fit):
     cell = f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm"
     figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{cell}, {runs}\ndrive: literal, f = {steps}")
     axes = figure.subplots()
+    for rate in table["printed_acceleration"].map("{:.6g}".format).unique():
+        axes.axvline(float(rate), color="0.85", lw=0.8, zorder=0)
     places = _side_by_side(table)
     for name, meaning in MARKS.items():
         there = table[name].notna()

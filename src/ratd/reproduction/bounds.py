@@ -103,7 +103,7 @@ def strength_omega(table, materials=None):
 
 
 def ratios(table, materials=None):
-    """The table of grains with the columns `printed_over_bound`, `strength_over_bound` and `found_over_bound`.
+    """The table of grains with columns of ratios.
 
     Parameters
     ----------
@@ -115,13 +115,18 @@ def ratios(table, materials=None):
     Returns
     -------
     pandas.DataFrame
-        omega of `table3_omega`, of `strength_omega` and omega_disr, each over the cut bound of the same grain.
+        `printed_over_bound`, `strength_over_bound`, `found_over_bound`: omega of `table3_omega`, of `strength_omega`
+        and omega_disr, each over the cut bound of the same grain. `printed_over_found`, and `printed_over_firm` where
+        the table has a firm bound: the first of these over omega_disr and over the firm bound.
     """
+    printed = table3_omega(table, materials)
+    firm = {"printed_over_firm": printed / table["firm_bound"]} if "firm_bound" in table else {}
     return table.assign(
-        printed_over_bound=table3_omega(table, materials) / table["cut_bound"],
+        **firm,
+        printed_over_bound=printed / table["cut_bound"],
         strength_over_bound=strength_omega(table, materials) / table["cut_bound"],
         found_over_bound=table["omega_disr"] / table["cut_bound"],
-        printed_over_found=table3_omega(table, materials) / table["omega_disr"],
+        printed_over_found=printed / table["omega_disr"],
     )
 
 

@@ -5,12 +5,13 @@ from ratd.reproduction.figures import LEAST
 CAPTIONS = {
     "bound": (
         "Angular velocities over the cut bound of the same grain, against size, a panel a type. Diamonds: Eq. 33 "
-        "with A and alpha as printed in Table 3; triangles: where the mean tension at the mid-plane is the tensile "
-        "strength of Tatsuuma et al. (2019); both are those of all grown grains. Circles and squares: omega_disr of "
-        "the grains that the drives prescribed and literal spun up. Each is a median over all materials, which have "
-        "the same weight; bars hold the middle 68 % of the grains. The dashed line is the cut bound itself.\n\n"
-        "What to see: which points keep near the dashed line, the omega that the contacts can hold, which lie far "
-        "above it, and how their distance grows with size."
+        "with A and alpha as printed in Table 3; triangles upside down: where the mean tension at the mid-plane is the "
+        "tensile strength of Tatsuuma et al. (2019); upright triangles: the firm bound; all of these are those of all "
+        "grown grains. Circles and squares: omega_disr of the grains that the drives prescribed and literal spun up. "
+        "Each is a median over all materials, which have the same weight; bars hold the middle two thirds of the "
+        "grains. The dashed line is the cut bound itself.\n\n"
+        "What to see: which points keep below the firm bound, above which the contacts cannot hold the grain as it "
+        "stands, which lie far above it, and how their distance grows with size."
     ),
     "lammps": (
         "Top left: the normal force of two spheres that are drawn apart, over the pull-off force F_C, against their "
@@ -43,11 +44,12 @@ CAPTIONS = {
         "Where the mass of grains of the cell of Fig. 4 starts to fall with the drive literal, against d omega/dt "
         "at the printed step: open circles mark the first loss of mass, squares the loss of 1 %, triangles that of "
         "25 %. A run with another step factor f than the printed one stands where d omega/dt over the step is the "
-        "same. Runs with one d omega/dt stand side by side, grain by grain. The solid line is a power law with one "
-        "exponent, fitted to the squares; the dashed line is the onset of mass loss in Fig. 4 of the paper. Where "
-        "they meet stands the diamond, the calibrated d omega/dt, with the bar of its standard error.\n\n"
+        "same. Runs with one d omega/dt stand side by side, grain by grain, about a vertical line, where they all "
+        "belong. The solid line is a power law with one exponent, fitted to the squares; the dashed line is the onset "
+        "of mass loss in Fig. 4 of the paper. Where they meet stands the diamond, the calibrated d omega/dt, with the "
+        "bar of its standard error.\n\n"
         "What to see: that the onset rises with d omega/dt, how nearly runs of one grain with two steps lie at the "
-        "same height, and whether the diamond lies within the range of the runs; outside it is extrapolated."
+        "same height, and whether the diamond lies between the vertical lines; outside it is extrapolated."
     ),
     "formulae": (
         "The same grains spun up with one formula at a time as it is printed, named on the left, the rest being the "
@@ -55,8 +57,8 @@ CAPTIONS = {
         "of the same grain in the consistent model. Markers are medians over the grains of a type, diamonds those "
         "over all grains; bars are their standard errors, and where none is seen it is shorter than the marker. The "
         "vertical line is 1, no change.\n\n"
-        "What to see: which markers leave the line by more than their bars, and how small the shifts are against "
-        "the factor between the print and the consistent model."
+        "What to see: which markers leave the line by more than their bars, and by how much. Other sizes than that in "
+        "the title were not tried."
     ),
     "fragments": (
         "Fragments that leave the largest one, by their mass over that of the grain: the share that lies in "

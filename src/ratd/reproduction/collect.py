@@ -17,11 +17,12 @@ from ratd.markdown import markdown_table
 from ratd.marks import disruption
 from ratd.provenance import file_hash, settings_hash, source_hash
 from ratd.reproduction.collected import AT_REST, INDEX, RECORDS, SNAPSHOTS, Collected, grain_key, table_keys
-from ratd.reproduction.data import CONFIG, GROWN
+from ratd.reproduction.data import CALIBRATION, CONFIG, GROWN
 from ratd.reproduction.kept import read_kept
 
 README = "README.md"
 KEPT = "as it was before this collection"
+REFITTED = {CALIBRATION: "; the document makes its fit anew from its runs"}
 
 
 class Collection:
@@ -166,7 +167,7 @@ class Collection:
             if name in self.written:
                 continue
             if path.parent == self.folder or path.parent.name == "validation":
-                self.written[name] = KEPT
+                self.written[name] = KEPT + REFITTED.get(name, "")
             else:
                 path.unlink()
         self.collected.write()

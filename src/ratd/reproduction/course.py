@@ -6,7 +6,7 @@ from ratd.calibration import onset
 from ratd.ensemble import cell_of
 from ratd.fragmentation import HALF
 from ratd.marks import disruption
-from ratd.reproduction.bounds import by_type_and_size
+from ratd.reproduction.bounds import by_type_and_size, sizes_of, split_sizes
 from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
     NEAR,
@@ -15,6 +15,7 @@ from ratd.reproduction.text import (
     Answer,
     all_of,
     answer,
+    between,
     drive_rows,
     number,
     over,
@@ -28,6 +29,11 @@ LEVEL = (
     "hardly turns, and omega follows d omega/dt and the step (What the literal drive does)."
 )
 BAM = ("BAM1", "BAM2")
+PIECES = (
+    "A grain that breaks at its weakest cut parts into large pieces. Those that have left are not spun up further; "
+    "whether the paper counts them as they leave is not said."
+)
+EARLY_CONTACTS = "A hundredth of the load of omega_disr, far from what breaks a contact. Given for the cell of Fig. 4."
 MOSTLY = 0.8
 """Share that counts as "almost completely"."""
 LARGER = 0.95
@@ -47,9 +53,10 @@ def rows(data):
         ),
         drive_rows(
             "gain",
-            {drive: table[table["type"] == "BAM2"] for drive, table in data.tables.items()},
+            data.tables,
             _gain,
-            "The median of all BAM2 grains; monomers of a grain that breaks at its weakest cut hardly move before.",
+            "The median of all BAM2 grains. The paper finds the gain most pronounced for BAM2, here BA gains most: its "
+            "arms swing out and touch.",
         ),
         drive_rows(
             "quarter",
@@ -61,9 +68,14 @@ def rows(data):
         drive_rows(
             "blocks",
             {drive: table[table["half"] & table["type"].isin(BAM)] for drive, table in data.fragments.items()},
-            _blocks,
-            "A grain that breaks at its weakest cut parts into large pieces. Those that have left are not spun up "
-            "further; whether the paper counts them as they leave is not said.",
+            _up_to(1),
+            PIECES,
+        ),
+        drive_rows(
+            "few",
+            {drive: table[table["half"]] for drive, table in data.fragments.items()},
+            _up_to(3),
+            PIECES,
         ),
     ]
 
@@ -102,19 +114,26 @@ def _onset(data):
 
 
 def _gain(table, printed):
-    found = median_of(table["n_contacts_max"] / table["n_contacts"], cell=cell_of(table))
+    table = table.assign(gain=table["n_contacts_max"] / table["n_contacts"])
+    own = table[table["type"] == "BAM2"]
+    found = median_of(own["gain"], cell=cell_of(own))
     if not found["n"]:
         return None
-    text = with_error(found["median"], found["error"])
+    parts = [
+        f"{kind} {int((part['gain'] > 1).sum())} of {len(part)} above 1, at most {part['gain'].max():.4g}"
+        for kind, part in table.groupby("type", sort=False)
+    ]
+    text = f"{with_error(found['median'], found['error'])} ({'; '.join(parts)})"
     return Answer(text, holds=bool(found["median"] > 1))
 
 
 def _quarter(table, printed):
     parts, verdicts = [], []
     for kind, sizes, part in by_type_and_size(table):
-        own = _median_answer(part["omega_mass_75"] / part["omega_disr"], printed, cell=cell_of(part))
+        ratio, cell = part["omega_mass_75"] / part["omega_disr"], cell_of(part)
+        own, found = _median_answer(ratio, printed, cell=cell), median_of(ratio, cell=cell)
         if own:
-            parts.append(f"{kind} {sizes} {own.text}")
+            parts.append(f"{kind} {sizes} {own.text} ({between(found['low'], found['high'])})")
             verdicts.append(own.holds)
     return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
 
@@ -145,30 +164,54 @@ def _whole(data):
     )
     return [
         row("whole_01", 0.1, lambda middle: bool(middle > 1 - 1e-9)),
+        drive_rows("contacts_01", dict(data.course), lambda runs, p: _contacts_at(runs, 0.1), EARLY_CONTACTS),
         row("whole_08", 0.8, lambda middle: bool(middle < 1 - 1e-9), early),
         row("whole_10", 1.0, lambda middle: bool(middle < LARGER), early),
     ]
 
 
+def _contacts_at(runs, part):
+    """Answer with the contacts at a part of omega_disr over those at the start, of the cell of Fig. 4."""
+    marked = [(run, part * float(disruption(run)["omega_disr"])) for run in runs]
+    values = np.array([_at(run, "n_contacts", omega) / run.attrs["initial_n_contacts"] for run, omega in marked])
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return None
+    middle = float(np.median(values))
+    text = f"{middle:.4f} ({values.min():.4f}–{values.max():.4f} of {len(values)})"
+    return Answer(text, holds=bool(middle < 1 - 1e-9))
+
+
 def _masses(runs, part):
     """Mass of the largest fragment over that of the grain, at a part of omega_disr, of each run that has one."""
-    values = np.array([_mass_at(run, part * float(mark["omega_disr"])) for run, mark in runs])
+    values = np.array(
+        [_at(run, "mass", part * float(mark["omega_disr"])) / run.attrs["initial_mass"] for run, mark in runs]
+    )
     return values[np.isfinite(values)]
 
 
-def _mass_at(run, omega):
-    """Part of the mass that the largest fragment holds at the first record from omega [rad/s] on."""
+def _at(run, name, omega):
+    """What a run has of the largest fragment at the first record from omega [rad/s] on."""
     if not np.isfinite(omega):
         return np.nan
     k = min(int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))), run.sizes["record"] - 1)
-    return float(run["mass"].values[k]) / run.attrs["initial_mass"]
+    return float(run[name].values[k])
 
 
-def _blocks(part, printed):
-    if not len(part):
-        return None
-    mass = part["weight"] * part["mass_fraction"]
-    share = mass[part["fragment_n_monomers"] == 1].sum() / mass.sum()
-    most = HALF * share + 1 - HALF  # if nothing but single monomers left afterwards
-    text = f"{number(share)} of the first half of the mass, so at most {number(most)} of all"
-    return Answer(text, over(most, printed.value), True if share >= MOSTLY else False if most < MOSTLY else None)
+def _up_to(monomers):
+    """What evaluates the share of the mass that leaves in fragments of up to so many monomers."""
+
+    def share_of(part):
+        mass = part["weight"] * part["mass_fraction"]
+        return mass[part["fragment_n_monomers"] <= monomers].sum() / mass.sum()
+
+    def evaluate(part, printed):
+        if not len(part):
+            return None
+        share = share_of(part)
+        most = HALF * share + 1 - HALF  # if nothing but such fragments left afterwards
+        sides = ", ".join(f"{sizes_of(own)} {number(share_of(own))}" for own in split_sizes(part))
+        text = f"{number(share)} of the first half of the mass ({sides}), so at most {number(most)} of all"
+        return Answer(text, over(most, printed.value), True if share >= MOSTLY else False if most < MOSTLY else None)
+
+    return evaluate

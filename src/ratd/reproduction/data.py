@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from ratd import io
@@ -18,6 +19,7 @@ FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
 MATERIALS_SCHEMA = "config/schema/materials.schema.yaml"
 GROWN = "grown.nc"
+FIRM_BOUNDS = "firm_bounds.nc"
 PARAMETERS = "parameters_{drive}.nc"
 CALIBRATION = "calibration.nc"
 FORMULAE = "formulae.nc"
@@ -27,8 +29,10 @@ FROM_RESULTS = {
     "formulae/table.nc": FORMULAE,
 }
 """File of a study below the results -> its name here. A study may have been made with another config."""
-STUDIES = ("lammps", "literal")
+STUDIES = ("lammps", "literal", "convergence")
 """Checks of the validation that the document takes numbers from."""
+DRAWN_STUDIES = ("lammps", "literal")
+"""Those of `STUDIES` that it has a figure of."""
 DRIVEN_FIGURES = {
     4: {"runs": "figure4/{drive}.nc"},
     5: {"runs": "figure5/{drive}.nc"},
@@ -126,7 +130,7 @@ class Data:
         if not self.drives:
             return names
         names += [name for name in ("calibration", "formulae") if self.has(f"{name}.nc")]
-        return names + [name for name in STUDIES if self.has(f"validation/{name}.nc")]
+        return names + [name for name in DRAWN_STUDIES if self.has(f"validation/{name}.nc")]
 
     def _each_drive(self, name, read):
         return {drive: read(self.path(name.format(drive=drive))) for drive in self.drives
@@ -139,10 +143,15 @@ class Data:
 
     @cached_property
     def grown(self):
-        """Table of the grains as grown: of all of them where that is part of the data, else of those of a drive."""
-        if self.has(GROWN):
-            return io.read_table(self.path(GROWN))
-        return max(self.tables.values(), key=len)
+        """Table of the grains as grown: of all of them where that is part of the data, else of those of a drive.
+
+        It has the column ``firm_bound`` [rad/s], see `ratd.firm_bound`, of NaN where it is not part of the data.
+        """
+        table = io.read_table(self.path(GROWN)) if self.has(GROWN) else max(self.tables.values(), key=len)
+        if not self.has(FIRM_BOUNDS):
+            return table.assign(firm_bound=np.nan)
+        firm = io.read(self.path(FIRM_BOUNDS), "firm_bounds").to_dataframe()
+        return table.merge(firm, how="left", on=["material", "type", "a_eff", "seed"], validate="one_to_one")
 
     @cached_property
     def fits(self):
@@ -200,9 +209,9 @@ class Data:
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""
         # not at the head: the Snakefile needs this module to be read in no time
-        from ratd.validation import lammps, literal
+        from ratd.validation import convergence, lammps, literal
         from ratd.validation.tables import read_tables
 
-        kind = {"lammps": lammps.KIND, "literal": literal.KIND}[name]
+        kind = {"lammps": lammps.KIND, "literal": literal.KIND, "convergence": convergence.KIND}[name]
         path = f"validation/{name}.nc"
         return read_tables([self.path(path)], kind) if self.has(path) else None

@@ -8,7 +8,7 @@ from ratd.figures.figure10 import relative_error
 from ratd.markdown import plural
 from ratd.parameters import MARKS
 from ratd.reproduction import course, shapes
-from ratd.reproduction.bounds import printed_slopes, table3_omega
+from ratd.reproduction.bounds import printed_slopes, sizes_of, table3_omega
 from ratd.reproduction.course import LEVEL
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import (
@@ -29,16 +29,20 @@ from ratd.schema import END_REASONS
 from ratd.statistics import median_of
 from ratd.tensile import predictions
 from ratd.units import NM
+from ratd.validation.show import convergence, literal
 
 FLAT = 0.25
 """Slope d ln omega/d ln a_eff that counts as none."""
+INDEPENDENT = 0.1
+"""Power of d omega/dt that counts as none."""
 NO_TREND = 0.05
 """Change of omega with a parameter that counts as none."""
 
 
 def rows(data):
     """Rows that need spin-ups, list of Row."""
-    return [_coverage(data), _terminal(data), *course.rows(data), *shapes.rows(data), *_omega(data), *_parameters(data)]
+    own = [_coverage(data), _terminal(data), _drag_time(data), *_omega(data), *_parameters(data)]
+    return [*own, *course.rows(data), *shapes.rows(data)]
 
 
 def _coverage(data):
@@ -54,6 +58,33 @@ def _terminal(data):
         return Answer(f"{kept} of {len(table)} reached it; {missing} without omega_disr", holds=not kept + missing)
 
     return drive_rows("terminal", data.tables, evaluate)
+
+
+def _drag_time(data):
+    """How omega_disr goes with the rate of the spin-up, from the checks of the validation."""
+
+    def prescribed(table, printed):
+        found = [(kind, size, *convergence.rate_exponent(shifts["omega_disr"]))
+                 for kind, size, shifts in convergence.large_shifts(table)]  # fmt: skip
+        if not found:
+            return None
+        text = "; ".join(f"{kind} {size:g} nm {with_error(*value)}" for kind, size, *value in found)
+        return Answer(text, holds=all_of(lies_in(*value, -INDEPENDENT, INDEPENDENT) for _, _, *value in found))
+
+    def of_literal(table, printed):
+        found = literal.rate_exponent(table, "omega_disr")
+        value = found["median"], found["error"]
+        return Answer(with_error(*value), holds=lies_in(*value, -INDEPENDENT, INDEPENDENT)) if found["n"] else None
+
+    sources = {"prescribed": (prescribed, data.study("convergence")), "literal": (of_literal, data.study("literal"))}
+    sources = {drive: own for drive, own in sources.items() if own[1] is not None and drive in data.tables}
+    return drive_rows(
+        "drag_time",
+        sources,
+        lambda source, printed: source[0](source[1], printed),
+        "prescribed: at the rate of the ensemble; it goes to 0 as the spin-up gets slower. literal: explicit Coriolis "
+        "term, see What the literal drive does.",
+    )
 
 
 def _omega(data):
@@ -94,7 +125,7 @@ def _omega(data):
             data.tables,
             flattening,
             f"The paper gives no slope. Its own fit, Eq. 33 with Table 3, has {fit} above {SPLIT / NM:g} nm for our "
-            "grains. See Beyond the paper.",
+            "grains: it has no limit either. See In short and Beyond the paper.",
         ),
         drive_rows(
             "withstand",
@@ -150,7 +181,12 @@ def _parameters(data):
                         parts.append(f"{kind} {name}{with_error(*value)}")
                         if mark == "omega_disr":
                             verdicts.append(lies_in(*value, *limits))
-            return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
+            if not parts:
+                return None
+            grains = here[here["type"].isin(kinds)].drop_duplicates(["type", "a_eff", "seed"])
+            return Answer(
+                f"{'; '.join(parts)} ({plural(len(grains), 'grain')} of {sizes_of(grains)})", holds=all_of(verdicts)
+            )
 
         return evaluate
 
@@ -184,8 +220,9 @@ def _weakened(data):
 def pairs(data):
     """Rows of Fig. 10, list of Row; they have no drive to choose."""
     if data.pairs is None:
-        return [Row("pairs"), Row("pairs_damped")]
-    table = data.pairs.assign(error=np.abs(relative_error(data.pairs)))
+        return [Row("pairs"), Row("pairs_trend"), Row("pairs_damped")]
+    signed = relative_error(data.pairs)
+    table = data.pairs.assign(error=np.abs(signed), signed=signed)
     damped, undamped = (table[table["start"] == start] for start in ("damped", "undamped"))
     against = np.abs(1 - damped["parting_omega"] / damped["eq35_omega"])
     exact = f"; {100 * damped['error'].max():.2g} % against sqrt(3 pi gamma/2m)"
@@ -194,12 +231,21 @@ def pairs(data):
             "pairs", undamped["error"], "",
             "A pair that vibrates nearly reaches the end of the branch, whose force Eq. 35 takes.",
         ),
+        _trend(undamped),
         _of_pairs(
             "pairs_damped", against, exact,
             "Eq. 35 takes 5/9 of the pull-off force, that of the end of the branch, which a damped pair under a slow "
             "load does not need: it holds up to the greatest pull.",
         ),
     ]  # fmt: skip
+
+
+def _trend(pairs):
+    """Row with the mean signed error of the undamped pairs."""
+    error = pairs["signed"].dropna()
+    value = error.mean(), error.std() / np.sqrt(len(error))
+    text = f"{with_error(*(100 * each for each in value))} % ({between(100 * error.min(), 100 * error.max())} %)"
+    return Row("pairs_trend", {"": Answer(text, holds=lies_in(*value, 0.0))})
 
 
 def _of_pairs(key, error, more, reason):

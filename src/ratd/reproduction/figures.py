@@ -27,6 +27,7 @@ DRIVE_LOOK = {
     "literal": {"color": "#D55E00", "marker": "s"},
 }
 PRINTED_LOOK = {"color": "black", "marker": "D"}
+FIRM_LOOK = {"color": "#009E73", "marker": "^"}
 STRENGTH_LOOK = {"color": GREY, "marker": "v"}
 SHARES = {
     "the lost mass": {"lw": 1.3, "ms": 3.5},
@@ -55,15 +56,18 @@ def bound(grown, tables, materials=None):
     -------
     matplotlib.figure.Figure
         Medians over all materials, each with the same weight, with the range of 68 %: Eq. 33 with Table 3, the tensile
-        strength, and omega_disr of each drive.
+        strength, the firm bound where it is known, and omega_disr of each drive.
     """
     tables = {drive: ratios(table, materials) for drive, table in tables.items()}
-    first = ratios(grown, materials)
+    firm = grown["firm_bound"] if "firm_bound" in grown else np.nan
+    first = ratios(grown, materials).assign(firm_over_bound=firm / grown["cut_bound"])
     types = list(dict.fromkeys(first["type"]))
     figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, "angular velocities over the cut bound of the same grain")
     panels = figure.subplots(1, len(types), sharex=True, sharey=True, squeeze=False)[0]
     series = [(first, "printed_over_bound", PRINTED_LOOK, "Eq. 33 with Table 3 as printed")]
     series.append((first, "strength_over_bound", STRENGTH_LOOK, "tensile strength, Tatsuuma et al. 2019"))
+    if first["firm_over_bound"].notna().any():
+        series.append((first, "firm_over_bound", FIRM_LOOK, "firm bound"))
     series += [
         (table, "found_over_bound", DRIVE_LOOK.get(drive, {}), rf"$\omega_\mathrm{{disr}}$, drive: {drive}")
         for drive, table in tables.items()

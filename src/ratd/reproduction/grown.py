@@ -6,7 +6,8 @@ import numpy as np
 
 from ratd.beyond import SPLIT
 from ratd.calibration import PRINTED_STEP
-from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, cell_statistics, size_key
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
+from ratd.growth import RadiusDistribution
 from ratd.laws.jkr import dissipation_time
 from ratd.materials import equilibrium_contact_radius, reduced_radius
 from ratd.reproduction.argument import printed_porosity
@@ -23,7 +24,6 @@ from ratd.reproduction.text import (
     near,
     number,
     over,
-    range_answer,
     with_error,
 )
 from ratd.statistics import mean_of, median_of
@@ -49,25 +49,36 @@ def rows(data):
         f"{(500 * NM / PAPER_MEAN_RADIUS) ** 3:.0f} of them, where Fig. 1 has {GRAINS['BA', 500][0]}; median "
         f"{growth['median_nm']:g} nm with sigma_ln {growth['sigma_ln']:g} gives the numbers of Fig. 1.",
     )
-    return [radius, *_porosity(table), *_fractal(table), *_step(data)]
+    return [radius, _deviation(data), *_porosity(table), *_fractal(table), *_step(data)]
+
+
+def _deviation(data):
+    """Row of the standard deviation of the radii, which follows from their distribution."""
+    radii = RadiusDistribution(**data.plan.radii)
+    value, printed = np.sqrt(radii.moment(2) - radii.moment(1) ** 2), PRINTED["deviation"]
+    found = Answer(f"{number(value / NM)} nm", over(value, printed.value), near(value, printed.value))
+    reason = "With it nearly all monomers would have the mean radius, and a grain far too many of them, as for 20 nm."
+    return Row("deviation", {"": found}, reason)
 
 
 def _porosity(table):
-    cells = cell_statistics(table, by=("type", "a_eff"))
     reason = (
         f"Means of the sizes, the least one of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a "
         f"solid sphere P = {printed_porosity(0.0):.2f}."
     )
     result = []
-    for kind in dict.fromkeys(table["type"]):
-        here, own = cells[cells["type"] == kind], table[table["type"] == kind]
-        least, greatest = here["porosity_mean"].min(), here["porosity_mean"].max()
+    for kind, own in table.groupby("type", sort=False):
+        means = {size * PM / NM: mean_of(part["porosity"]) for size, part in own.groupby(size_key(own["a_eff"]))}
+        least, greatest = min(means.values()), max(means.values())
         for key in (f"porosity_{kind}", f"porosity_{kind}_text"):
             if key in PRINTED:
                 low, high = PRINTED[key].value
-                single = f" (single grains {between(own['porosity'].min(), own['porosity'].max())})"
-                inside = bool(0.9 * low < least and greatest < 1.1 * high)
-                found = range_answer(least, greatest, PRINTED[key], inside, single)
+                verdicts = {size: lies_in(*mean, 0.9 * low, 1.1 * high) for size, mean in means.items()}
+                outside = ", ".join(f"{size:g}" for size, verdict in verdicts.items() if verdict is False)
+                text = f"{with_error(*least)} to {with_error(*greatest)} (single grains "
+                text += between(own["porosity"].min(), own["porosity"].max())
+                text += f"; outside at {outside} nm)" if outside else ")"
+                found = Answer(text, over((least[0], greatest[0]), PRINTED[key].value), all_of(verdicts.values()))
                 result.append(Row(key, {"": found}, reason))
     changes = _changes(table, "porosity", SPLIT, mean_of)
     holds = all_of(lies_in(*change, -STAGNATES, STAGNATES) for _, _, change in changes)

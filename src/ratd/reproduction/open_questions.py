@@ -18,7 +18,7 @@ from ratd.reproduction.bounds import printed_slopes, whole_nm
 from ratd.reproduction.text import NOTHING, interval, number, with_error
 from ratd.spinup import FIRST_LOSS
 from ratd.units import NM
-from ratd.validation.show.convergence import haste
+from ratd.validation.show.convergence import haste, large_shifts, percent
 
 JUSTIFIED = 0.1
 """Probability below which a power law is not given (Clauset et al. 2009)."""
@@ -114,10 +114,20 @@ def _pace(data):
     return [
         f"The spin-up of the drive `prescribed` has its epsilon from {FIRST_LOSS:g} of the cut bound on and is faster "
         "below (docs/model.md, The scheme). Where grains lose their first mass (d omega/dt)/omega² is, in medians, so "
-        f"many times epsilon: {'; '.join(parts)}. A faster spin-up of BAM grains gives a greater omega; by how much, "
-        "docs/validation.md (Convergence) tells, also of large grains. Where this number grows with size, the fall of "
-        "omega_disr with size comes out too shallow, not too steep."
+        f"many times epsilon: {'; '.join(parts)}. A faster spin-up of BAM grains gives a greater omega"
+        f"{_tried(data)}. Where this number grows with size, the fall of omega_disr with size comes out too shallow, "
+        "not too steep."
     ]
+
+
+def _tried(data):
+    """Words on how much greater omega_disr is than with an infinitely slow spin-up."""
+    table = data.study("convergence")
+    found = large_shifts(table) if table is not None else []
+    parts = [f"{kind} {size:g} nm {percent(shifts['omega_disr'])} %" for kind, size, shifts in found]
+    if not parts:
+        return ""
+    return f", above that of an infinitely slow one by {', '.join(parts)} (docs/validation.md, Convergence)"
 
 
 def fragment_section(data):

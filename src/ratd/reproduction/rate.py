@@ -3,14 +3,19 @@
 import numpy as np
 
 from ratd.calibration import PRINTED_STEP, printed_acceleration, step_ratios
+from ratd.drives import OMEGA_RAT
 from ratd.ensemble import cell_of
 from ratd.markdown import markdown_table, plural
 from ratd.parameters import MARKS
 from ratd.parameters import OWN as AS_IT_IS
 from ratd.reproduction.bounds import median_and_range, ratios, sizes_of, table3_omega, whole_nm
+from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.solid import solid_omega
 from ratd.statistics import equal_weights, median_of, quantiles, slope_error, slope_of
+
+HOUR = 3600.0
+"""Drag time of “hours” [s] (Sect. 6 of the paper)."""
 
 
 def calibration_section(data):
@@ -24,14 +29,16 @@ def calibration_section(data):
         low, high = found["calibrated_low"].item(), found["calibrated_high"].item()
         runs = found.to_dataframe()
         parts.append(
-            "The literal drive has one number that the paper does not give, d omega/dt (the step is printed). The "
-            f"onset of mass loss in Fig. 4, {number(value['omega_onset'])} rad/s, fixes it: "
+            "The literal drive has one number that the paper does not give, the d omega/dt that its figures were made "
+            f"with (the step is printed). The onset of mass loss in Fig. 4, {number(value['omega_onset'])} rad/s, "
+            "fixes it: "
             f"{number(value['calibrated'])} rad/s² ({between(low, high)} for one standard error), from a fit of "
             f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
             f"{plural(int(found.sizes['entry']), 'run')} of {plural(runs['seed'].nunique(), 'grain')}; the errors are "
             "those of leaving out one grain after the other. The onset is the loss of 1 % of the mass. With p = 1/3, "
             "what the energy fed in would give by itself, it is "
-            f"{number(found['calibrated_by_law'].item())} rad/s² from the slowest run of each grain. Besides the "
+            f"{number(found['calibrated_by_law'].item())} rad/s² from the slowest run of each grain. "
+            f"{_rates(runs, found['calibrated'].item())}Besides the "
             "radii of the monomers, which give the numbers of Fig. 1, nothing else was fitted to the paper."
         )
         pairs = step_ratios(runs)
@@ -48,7 +55,7 @@ def calibration_section(data):
                 f"{with_error(own['median'], own['error'])} times that with f = {shorter} "
                 f"({between(pairs['ratio'].min(), pairs['ratio'].max())} from least to greatest)."
             )
-    parts += [*_shorter_step(data), *solid_parts(data)]
+    parts += [*_drag_time(data), *_shorter_step(data), *solid_parts(data)]
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
         table = ratios(data.tables["literal"], data.plan.materials)
@@ -75,6 +82,48 @@ def calibration_section(data):
             "with size?, beside that of Eq. 33 with Table 3."
         )
     return "\n\n".join(parts)
+
+
+def _rates(runs, calibrated):
+    """A sentence: which d omega/dt the runs had, and whether the calibrated one lies outside."""
+    rates = sorted({float(f"{rate:.6g}") for rate in runs["printed_acceleration"]})
+    words = f"The runs stand for {', '.join(map(number, rates))} rad/s²"
+    if np.isfinite(calibrated) and not rates[0] <= calibrated <= rates[-1]:
+        nearest = rates[0] if calibrated < rates[0] else rates[-1]
+        words += f", from which the answer is extrapolated by {100 * abs(calibrated / nearest - 1):.2g} %"
+    return f"{words}. "
+
+
+def _drag_time(data):
+    """A paragraph: what the drag time that the paper names would give."""
+    figure4 = data.plan.config["figures"]["figure4"]
+    if figure4 is None or "prescribed" not in data.tables:
+        return []
+    rate = OMEGA_RAT / HOUR
+    table = with_literal_step(data, PRINTED_STEP)
+    cell = table[
+        (table["material"] == figure4["material"])
+        & (table["type"] == figure4["type"])
+        & (whole_nm(table) == round(figure4["size_nm"]))
+    ]
+    solid = median_of(solid_prediction(cell, rate))
+    if not solid["n"]:
+        return []
+    onset = PRINTED["onset"].value
+    steps = onset / rate / cell["literal_step"].median()
+    words = (
+        f"The paper does name omega_RAT = {number(OMEGA_RAT)} rad/s and a drag time “in the order of hours”, which "
+        f"“does not impact the result” (Sects. 6 and 7). One hour is {number(rate)} rad/s² by Eq. 26, and "
+        f"{number(onset)} "
+        f"rad/s would be reached after {number(steps)} printed steps, so that the figures can hardly have been made "
+        "with it. Under the printed equations it is no detail: at that rate a solid grain of the cell of Fig. 4 would "
+        f"part at {with_error(solid['median'], solid['error'])} rad/s, {number(solid['median'] / onset)} times the "
+        "printed onset"
+    )
+    calibrated = np.nan if data.calibration is None else data.calibration["calibrated"].item()
+    if np.isfinite(calibrated):
+        words += f"; the calibrated rate is a drag time of {1e3 * OMEGA_RAT / calibrated:.2g} ms"
+    return [f"{words}."]
 
 
 def _shorter_step(data):

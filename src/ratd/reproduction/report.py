@@ -2,15 +2,19 @@
 
 from ratd.calibration import PRINTED_STEP
 from ratd.composition import tell
-from ratd.ensemble import size_key
+from ratd.ensemble import cell_of, size_key
 from ratd.markdown import markdown_table
+from ratd.marks import MEDIAN_WINDOW
 from ratd.reproduction import argument, disrupted, grown, open_questions, rate
+from ratd.reproduction.bounds import sizes_of, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.summary import summary
 from ratd.reproduction.table3 import table3_section
 from ratd.reproduction.text import number, row_table
+from ratd.spinup import FIRST_LOSS
+from ratd.statistics import median_of
 
 INTRODUCTION = """# Reproduction of Reissl et al. (2024)
 
@@ -24,8 +28,9 @@ Numbers and figures were written by
 
 from the files in `docs/reproduction/data`, where a README says how these were made; no number but the printed ones and
 the rules of “holds if” was typed by hand. "±" is a standard error; that of a median over several cells takes in the
-differences between them, and is an upper limit. A range in brackets behind a value is the middle two thirds of the
-grains, and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
+differences between them, and is an upper limit, as the cells that are meant are all there. A range in brackets behind
+a value is that from the 16th to the 84th percentile of the grains, called the middle two thirds, and a {confidence:g} %
+interval where the text says so. Angular velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 
@@ -44,16 +49,20 @@ What the printed equations do is shown here. What the authors' code did is not k
   and a mixture of silicates, the three materials. A cell is a material, type and size.
 - a_eff, the size: radius of the sphere of the same volume of matter. a, b, c: semi-axes of a grain, a < b < c; oblate
   means b/a > c/b. phi: filling factor. P = 1 - phi: porosity.
-- omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks. Other marks are the
-  first loss of mass, and the loss of a quarter of it.
+- omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks, as long as that holds
+  half of the mass of the grain; the stress is a running median over {window} records. Other marks are the first loss of
+  mass, and the loss of a quarter of it.
 - Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3;
   N_con is the number of contacts and <a_mon> the mean radius of the monomers. With the printed Table 3 it is taken at
   the printed <a_mon> = 20 nm; with that of our grains, which is greater, it would be lower (Table 3).
-- F_C: the greatest pull of a contact. Cut bound, or the bound: the omega above which the weakest cut through the
-  contacts of a grain, each holding F_C, gives way (What the contacts can hold).
+- F_C: the greatest pull of a contact. Cut bound: the omega above which the weakest cut through the contacts of a grain,
+  each holding F_C, gives way; firm bound: the same with all that contacts bear, sideways and pushed as well (What the
+  contacts can hold).
 - dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}.
-- d omega/dt: how fast the drive `literal` raises omega, which the paper does not give. The runs of the ensemble have
-  {rate}; other runs name theirs.
+- epsilon = (d omega/dt)/omega², how fast the drive `prescribed` raises omega; {epsilon} from {first:g} of the cut bound
+  on, faster below.
+- d omega/dt: how fast the drive `literal` raises omega. What the figures of the paper were made with is not known (One
+  free number of the literal drive). The runs of the ensemble have {rate}; other runs name theirs.
 - xi_c: how far a contact rolls before it gives way; T_vis: viscous time of the damping. The cell of Fig. 4: {cell}.
 - A solid grain: one that turns as a rigid body, until it parts where the consistent model says."""
 
@@ -89,8 +98,8 @@ def report(data, pictures, captions=None):
         "under “holds if”: within a quarter is a factor of 1.25 either way, to a tenth is 10 % beyond either end. "
         "Where an error is given, yes and no need two errors; values without one (extremes, ranges, the cell of Fig. "
         "4) are compared as they stand. A dash: not decided, no rule, or used to fix the drive. Left out are Fig. 3, a "
-        "sketch, and what the paper says of its own runs (their energy error, number of steps, and drag time) or of "
-        "other work.",
+        "sketch, and what the paper says of its own runs (their energy error and number of steps), of other work, and "
+        "of fits with other exponents.",
         *_printed_numbers(rows, drives),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
@@ -110,6 +119,9 @@ def _introduction(data):
     return INTRODUCTION.format(
         confidence=100 * config["ensemble"]["confidence"],
         step=PRINTED_STEP,
+        window=MEDIAN_WINDOW,
+        epsilon=data.plan.pace("prescribed").removeprefix("epsilon = "),
+        first=FIRST_LOSS,
         cell=_cell_of_figure4(config),
         rate=own if printed is None else f"{own}, which stands for {number(printed)} rad/s² at the printed step",
     )
@@ -146,7 +158,27 @@ def _coverage(data):
         "as in the paper, where each has 30 grains: means, medians and fits do not depend on how many grains of each "
         "could be computed, but their errors do. Cells that are missing here are missing in all of that."
     )
-    return f"{text}\n\n{markdown_table(['drive', 'type', *(f'{s / 1e3:g} nm' for s in sizes), 'all'], rows)}"
+    counts = markdown_table(["drive", "type", *(f"{s / 1e3:g} nm" for s in sizes), "all"], rows)
+    return "\n\n".join([text, counts, _marks(data)])
+
+
+def _marks(data):
+    """A paragraph: grains that lack the mark of 25 % of the mass, and what the definition of omega_disr decides."""
+    lacking, greater, levels = [], [], []
+    for drive, table in data.tables.items():
+        without = table[table["omega_mass_75"].isna()]
+        lacking.append(f"{len(without)} ({drive}{f', {sizes_of(without)}' if len(without) else ''})")
+        count = int((table["omega_stress_max"] > table["omega_disr"] * (1 + 1e-9)).sum())
+        greater.append(f"{count} of {len(table)} ({drive})")
+        printed = table3_omega(table, data.plan.materials)
+        level = median_of(table["omega_stress_max"] / printed, cell=cell_of(table))
+        levels.append(f"{number(level['median'])} ({drive})")
+    return (
+        f"Grains in which one contact was left before a quarter of the mass had gone: {', '.join(lacking)}; they are "
+        "missing in what is said of 25 % of the mass. Had the stress of a largest fragment with less than half of the "
+        f"mass counted, omega_disr would be greater in {', '.join(greater)} grains, and its median over Eq. 33 with "
+        f"the printed Table 3 {', '.join(levels)}."
+    )
 
 
 def _figures(data, pictures, captions):

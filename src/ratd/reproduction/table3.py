@@ -14,10 +14,15 @@ def table3_section(data):
     sizes = ", ".join(f"{size * PM / NM:g}" for size in shown_sizes(data.grown))
     parts = [
         "Least squares of ln omega_disr over single grains, all sizes with the same weight; in brackets the bootstrap "
-        "interval. <a_mon> is read as the printed 20 nm and as the mean radius of each grain's own monomers: the "
+        f"interval of {100 * data.plan.config['ensemble']['confidence']:g} %. <a_mon> is read as the printed 20 nm and "
+        "as the mean radius of each grain's own monomers: the "
         "choice moves A, and hardly alpha. A is the value at N_con phi = 1, far from any grain, and moves against "
         "alpha: what can be compared is Eq. 33 with the fitted numbers over Eq. 33 with the printed ones, given at "
-        f"{sizes} nm for the mean N_con phi there. Scatter: standard deviation of ln omega_disr about the fit."
+        f"{sizes} nm for the geometric mean of N_con phi of the grown grains there, both with the <a_mon> that the "
+        "table "
+        "names, which lowers the printed one where it is the greater own mean radius. Scatter: standard deviation of "
+        "ln "
+        "omega_disr about the fit."
     ]
     for drive, fit in data.fits.items():
         for reading in fit["mean_radius"].values:

@@ -280,10 +280,49 @@ def _limit(rows):
     )
 
 
+def rate_exponent(shift):
+    """d ln omega/d ln(d omega/dt) of a mark that lies above its slow limit by a shift that goes with `LAG_POWER`.
+
+    Parameters
+    ----------
+    shift : dict
+        From `shift_from_limit`.
+
+    Returns
+    -------
+    exponent, error : float
+    """
+    above = 1.0 + shift["median"]
+    return LAG_POWER * shift["median"] / above, LAG_POWER * shift["error"] / above**2
+
+
 def _percent(rows):
     """`shift_from_limit` of each mark of `IN_CELLS`, in percent with its error."""
-    found = (shift_from_limit(rows, mark) for mark in IN_CELLS)
-    return [measured(100 * s["median"], 100 * s["error"]) for s in found]
+    return [percent(shift_from_limit(rows, mark)) for mark in IN_CELLS]
+
+
+def percent(statistic):
+    """A median of `ratd.statistics.median_of` in percent with its error, text."""
+    return measured(100 * statistic["median"], 100 * statistic["error"])
+
+
+def large_shifts(table):
+    """Shifts of the marks of large grains from the limit of a slow spin-up.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.convergence.COLUMNS`.
+
+    Returns
+    -------
+    list of (str, float, dict)
+        Type, size [nm], and mark of `IN_CELLS` -> what `shift_from_limit` gives.
+    """
+    rows = ratios(table, "epsilon_large")
+    return [
+        (kind, size, {mark: shift_from_limit(part, mark) for mark in IN_CELLS}) for (kind, size), part in _by_cell(rows)
+    ]
 
 
 def haste(first_loss):

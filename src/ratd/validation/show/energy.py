@@ -77,7 +77,8 @@ def tell(table):
             "Work of the outer torque = kinetic + potential + dissipated energy, up to the first loss of mass, at the "
             f"epsilon of production and f = {table['timestep_factor'].iloc[0]:g}. The gap is what is left over in the "
             "last record before the loss. Kinetic energies are those of velocities half a step old, which is part of "
-            "the gap.",
+            "the gap; another part is that a spring which slips or rolls on by D in a step is counted to lose k D²/2 "
+            "more than the force does that acted, of first order in the step.",
             markdown_table(header, rows),
         ]
     )

@@ -54,6 +54,18 @@ def torn_backwards(rows, mark):
     return rows[(rows["coriolis"] == "explicit") & has & rows[f"backwards_{mark}"]]
 
 
+def rate_exponent(table, mark):
+    """Exponent of a mark in d omega/dt with the explicit term, see `ratd.statistics.median_of`; over the grains.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.literal.COLUMNS`.
+    mark : str
+    """
+    return median_of([power for power, _ in exponents(torn_backwards(with_reference(table), mark), mark)])
+
+
 def exponents(rows, column):
     """Exponents of omega in d omega/dt and in dt, fitted within each grain; list of pairs."""
     found = []
@@ -145,8 +157,9 @@ def tell(table):
             "(omega - Omega)² dt with s the share of the spins, and it parts where |Omega| is the consistent threshold "
             "(`ratd.solid.solid_omega`). omega/q then depends on s and on threshold/q alone. omega ~ q, "
             "the exponents 1/3 and -1/3, would hold for a threshold far above q; far below, they are 1/4 and -1/4. "
-            "They are fitted within each grain, to the runs and to what the solid grain gives for the same runs; "
-            "medians over the grains with standard error, in brackets the range of 68 % of the runs.",
+            "They are fitted within each grain, to the runs in which a solid grain is turned backwards and to what the "
+            "solid grain gives for these; medians over the grains with standard error, in brackets the range of 68 % "
+            "of the runs.",
             markdown_table(
                 [
                     "mark",
@@ -220,7 +233,7 @@ def _verdict(rows):
     if np.isfinite(found["error"]) and found["error"] > 0.0:
         apart = abs(found["median"] - LAW) / found["error"]
         words += (
-            f"The exponent of d omega/dt is {apart:.1f} standard errors away from 1/3: omega ~ "
+            f"Its exponent of d omega/dt is {apart:.1f} standard errors away from 1/3: omega ~ "
             f"(d omega/dt / dt)^(1/3) {'holds within its error' if apart < 2.0 else 'does not hold exactly'}."
         )
     return words.strip()
