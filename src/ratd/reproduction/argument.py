@@ -8,7 +8,7 @@ from ratd.firm_bound import slide_forces
 from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table, plural
 from ratd.materials import pull_off_force, reduced_radius
-from ratd.reproduction.bounds import by_type_and_size, median_and_range, ratios, table3_omega, whole_nm
+from ratd.reproduction.bounds import by_type_and_size, median_and_range, ratios, same_grains, table3_omega, whole_nm
 from ratd.reproduction.text import number, with_error
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
@@ -140,6 +140,8 @@ def _above_bound(data):
     counts = [
         f"{int((part['over'] > 1).sum())} of {len(part)} ({kind})" for kind, part in table.groupby("type", sort=False)
     ]
+    known = same_grains(table, data.grown[data.grown["firm_bound"].notna()], ("", "_grown"))
+    firm = known[known["omega_first_loss"] > known["firm_bound"]]
     above = table[table["over"] > 1]
     fixed = above[above["n_contacts_max"] <= above["n_contacts"]]
     words = f" Of these {len(above) - len(fixed)} make contacts on the way."
@@ -148,6 +150,12 @@ def _above_bound(data):
             f" The others, of {int(fixed['n_monomers'].min())} to {int(fixed['n_monomers'].max())} monomers, lie above "
             f"it by at most {100 * (fixed['over'].max() - 1):.2g} %: monomers need time to part, while omega goes on "
             "rising (docs/model.md, The scheme)."
+        )
+    if len(known):
+        gain = int((firm["n_contacts_max"] > firm["n_contacts"]).sum())
+        words += (
+            f" Above the firm bound it leaves in {len(firm)} of {len(known)} grains, {gain} of them with new contacts, "
+            "the others late in the same way."
         )
     return [
         "In the drive `prescribed` the first mass leaves below the cut bound, above it in "

@@ -139,3 +139,9 @@ def median_and_range(table, values):
 def whole_nm(table):
     """Sizes of the grains of a table in whole nm, array of int."""
     return np.rint(table["a_eff"] / NM).astype(int)
+
+
+def same_grains(table, other, suffixes):
+    """Grains that two tables have, with the columns of both; those of one name get a suffix each."""
+    key = ["material", "type", "seed", "nm"]
+    return table.assign(nm=whole_nm).merge(other.assign(nm=whole_nm), on=key, suffixes=suffixes)

@@ -8,7 +8,7 @@ from ratd.ensemble import cell_of
 from ratd.markdown import markdown_table, plural
 from ratd.parameters import MARKS
 from ratd.parameters import OWN as AS_IT_IS
-from ratd.reproduction.bounds import median_and_range, ratios, sizes_of, table3_omega, whole_nm
+from ratd.reproduction.bounds import median_and_range, ratios, same_grains, sizes_of, table3_omega, whole_nm
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.solid import solid_omega
@@ -137,7 +137,7 @@ def _shorter_step(data):
     if not np.isclose(rate, printed_acceleration(**other), rtol=1e-6, atol=0):
         return []
     short = data.parameters["literal"]
-    both = _same_grains(data.tables["literal"], short[short["parameter"] == AS_IT_IS], ("_long", "_short"))
+    both = same_grains(data.tables["literal"], short[short["parameter"] == AS_IT_IS], ("_long", "_short"))
     found = {mark: median_of(both[f"{mark}_long"] / both[f"{mark}_short"]) for mark in MARKS}
     if not all(own["n"] for own in found.values()):
         return []
@@ -150,12 +150,6 @@ def _shorter_step(data):
         f"The same can be seen in the {plural(len(both), 'grain')} that both the ensemble and Fig. 9 have: with f = "
         f"{law['timestep_factor']:g} {' and '.join(words)} the omega with f = {other['timestep_factor']:g}."
     ]
-
-
-def _same_grains(table, other, suffixes):
-    """Grains that two tables have, with the columns of both; those of one name get a suffix each."""
-    key = ["material", "type", "seed", "nm"]
-    return table.assign(nm=whole_nm).merge(other.assign(nm=whole_nm), on=key, suffixes=suffixes)
 
 
 def printed_rate(data):
@@ -188,7 +182,7 @@ def solid_parts(data):
     rate = law["angular_acceleration"]
     if "literal" in data.tables and rate is not None:
         consistent = with_literal_step(data, law["timestep_factor"])
-        both = _same_grains(consistent, data.tables["literal"], ("", "_literal"))
+        both = same_grains(consistent, data.tables["literal"], ("", "_literal"))
         ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
         parts[0] += (
             f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
