@@ -129,9 +129,12 @@ def _text(error):
     if error.validator != "type" or not isinstance(error.instance, str):
         return ""
     try:
-        return f" (text for YAML; as a number it is written {float(error.instance):.1e})"
+        number = float(error.instance)
     except ValueError:
         return ""
+    mantissa, e, exponent = repr(number).partition("e")
+    written = f"{mantissa}{'' if '.' in mantissa else '.0'}{e}{exponent}"
+    return f" (text for YAML; as a number it is written {written})" if math.isfinite(number) else ""
 
 
 def _dotted(path):

@@ -178,7 +178,9 @@ class Job:
             for number, (block, seed) in enumerate(waiting):
                 try:
                     row = make(seed, block.checkpoint(seed))
-                except RuntimeError as error:  # of this grain: the others may do
+                except RuntimeError as error:
+                    if type(error) is not RuntimeError:  # a subclass is no matter of this grain
+                        raise
                     self.log.error(f"seed {seed}: {error}")
                     failed.append(f"seed {seed}: {error}")
                 else:

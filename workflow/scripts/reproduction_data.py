@@ -21,7 +21,7 @@ with Job(snakemake) as job:
         collection.copy(path, f"pairs/{Path(path).name}", f"pairs of Fig. 10, {Path(path).stem}")
     if files.grains:
         collection.grains(files.grains, plan.config["figures"]["figure1"]["seed"])
-    for name, (path,) in settings["studies"].items():
+    for name, (path,) in settings["studies"].items():  # a path and its hash each
         collection.copy(path, name, "a study of the reproduction")
     if files.firm_bounds:
         collection.tables(files.firm_bounds, "firm_bounds", FIRM_BOUNDS, "firm bounds of all grains as grown")

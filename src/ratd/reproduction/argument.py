@@ -48,13 +48,15 @@ def bound_section(data):
         "it slides, and pushes without limit: a grain that is loaded at a slant to its weakest contact can hold more "
         "(`tests/test_firm_bound.py` has one that does, and parts at the firm bound). So it is a yardstick, and no "
         "bound in the strict sense.\n"
-        "- The firm bound, with all of that counted: a contact whose line of centres has the angle theta to the load "
-        "bears F_C cos(theta) and the greatest force sideways times sin(theta), one that is pushed bears any. Above it "
-        "no forces that the contacts can bear hold the grain as it stands.",
-        "For trees, i.e. BA without chance contacts, the cut bound is exact; otherwise both are the least of the "
-        "bridges and planes that were tried, and the true ones can only be less, as they can where torques, which are "
-        "left out, count too. New contacts, made while a grain deforms, may raise them; they are compared, not "
-        "enforced.",
+        "- The firm bound, with all of that counted. A contact that is alone in its cut bears the part of the load "
+        "along its line of centres with F_C, and the part across it sideways. Of several, one whose line of centres "
+        "has the angle theta to the load bears F_C cos(theta) and the greatest force sideways times sin(theta) of it, "
+        "and one that is pushed any. Above the firm bound no forces that the contacts can bear hold the grain as it "
+        "stands.",
+        "For trees, i.e. BA without chance contacts, both are exact as far as forces go; otherwise they are the least "
+        "of the bridges and planes that were tried, and the true ones can only be less, as they can where torques, "
+        "which are left out, count too. New contacts, made while a grain deforms, may raise them; they are compared, "
+        "not enforced.",
         _above(first),
         "Medians with the range of the middle two thirds. The tensile strength is 0.951 gamma/a phi^1.8 (Tatsuuma et "
         "al. 2019, from pulled aggregates; a is the mean radius of the monomers of the grain) set against the mean "
@@ -87,14 +89,14 @@ def _above(table):
         if len(known):
             load = median_of(known[column] ** 2, cell=cell_of(known))["median"]
             found.append(
-                f"above the {name} bound for {int((known[column] > 1).sum())} of {plural(len(known), 'grain')}, where "
-                f"the load of the weakest cut is {number(load)} times what it bears, in the median of all"
+                f"above the {name} bound for {int((known[column] > 1).sum())} of {plural(len(known), 'grain')} (in the "
+                f"median of all its load on the weakest cut is {number(load)} times what that bears)"
             )
     return f"Eq. 33 with the printed Table 3 lies {', and '.join(found)}. The load grows as omega²."
 
 
 def _of_strength(data):
-    """A paragraph: the omega of the tensile strength beside Table 3 and the consistent model, large grains."""
+    """A paragraph: the omega of the tensile strength beside the consistent model and Table 3."""
     if "prescribed" not in data.tables:
         return []
     words = []
@@ -154,14 +156,13 @@ def _above_bound(data):
     if len(known):
         gain = int((firm["n_contacts_max"] > firm["n_contacts"]).sum())
         words += (
-            f" Above the firm bound it leaves in {len(firm)} of {len(known)} grains, {gain} of them with new contacts, "
-            "the others late in the same way."
+            f" Above the firm bound it leaves in {len(firm)} of {len(known)} grains, {gain} of them with new contacts."
         )
     return [
         "In the drive `prescribed` the first mass leaves below the cut bound, above it in "
         f"{', '.join(counts)} grains.{words if len(above) else ''} omega_disr is the peak of the stress of the "
         "largest fragment: where part of the mass has left by then, as in large BA grains, it belongs to a remnant, "
-        "and may lie above the bound of the whole grain."
+        "and may lie above the cut bound of the whole grain."
     ]
 
 

@@ -141,6 +141,12 @@ def whole_nm(table):
     return np.rint(table["a_eff"] / NM).astype(int)
 
 
+def in_cell(table, cell):
+    """Grains of one cell of a table; `cell` has material, type and size_nm, as in the config."""
+    here = (table["material"] == cell["material"]) & (table["type"] == cell["type"])
+    return table[here & np.isclose(table["a_eff"], cell["size_nm"] * NM, rtol=1e-6, atol=0)]
+
+
 def same_grains(table, other, suffixes):
     """Grains that two tables have, with the columns of both; those of one name get a suffix each."""
     key = ["material", "type", "seed", "nm"]

@@ -6,7 +6,7 @@ from ratd.calibration import onset
 from ratd.ensemble import cell_of
 from ratd.fragmentation import HALF
 from ratd.marks import disruption
-from ratd.reproduction.bounds import by_type_and_size, sizes_of, split_sizes
+from ratd.reproduction.bounds import by_type_and_size, in_cell, sizes_of, split_sizes
 from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
     NEAR,
@@ -22,7 +22,6 @@ from ratd.reproduction.text import (
     with_error,
 )
 from ratd.statistics import median_of
-from ratd.units import NM
 
 LEVEL = (
     "prescribed: a grain that turns as a whole cannot hold the printed omega (What the contacts can hold). literal: it "
@@ -55,8 +54,7 @@ def rows(data):
             "gain",
             data.tables,
             _gain,
-            "The median of all BAM2 grains. The paper finds the gain most pronounced for BAM2, here BA gains most: its "
-            "arms swing out and touch.",
+            "The median of all BAM2 grains, for which the paper finds the gain most pronounced.",
         ),
         drive_rows(
             "quarter",
@@ -91,14 +89,7 @@ def _of_cell(data):
     own = data.plan.config["figures"]["figure4"]
     if own is None:
         return {}
-    return {
-        drive: table[
-            (table["material"] == own["material"])
-            & (table["type"] == own["type"])
-            & np.isclose(table["a_eff"], own["size_nm"] * NM, rtol=1e-6, atol=0)
-        ]
-        for drive, table in data.tables.items()
-    }
+    return {drive: in_cell(table, own) for drive, table in data.tables.items()}
 
 
 def _onset(data):

@@ -13,6 +13,7 @@ import pandas as pd
 from ratd import io
 from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
+from ratd.ensemble import size_key
 from ratd.fragmentation import fragment_table
 
 FOLDER = "docs/reproduction/data"
@@ -151,7 +152,10 @@ class Data:
         if not self.has(FIRM_BOUNDS):
             return table.assign(firm_bound=np.nan)
         firm = io.read(self.path(FIRM_BOUNDS), "firm_bounds").to_dataframe()
-        return table.merge(firm, how="left", on=["material", "type", "a_eff", "seed"], validate="one_to_one")
+        key = ["material", "type", "seed", "size"]
+        parts = [part.assign(size=size_key(part["a_eff"])) for part in (table, firm)]
+        joined = parts[0].merge(parts[1][[*key, "firm_bound"]], how="left", on=key, validate="one_to_one")
+        return joined.drop(columns="size")
 
     @cached_property
     def fits(self):

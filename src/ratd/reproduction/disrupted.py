@@ -26,7 +26,7 @@ from ratd.reproduction.text import (
     with_error,
 )
 from ratd.schema import END_REASONS
-from ratd.statistics import median_of
+from ratd.statistics import mean_of, median_of
 from ratd.tensile import predictions
 from ratd.units import NM
 from ratd.validation.show import convergence, literal
@@ -82,8 +82,9 @@ def _drag_time(data):
         "drag_time",
         sources,
         lambda source, printed: source[0](source[1], printed),
-        "prescribed: at the rate of the ensemble; it goes to 0 as the spin-up gets slower. literal: explicit Coriolis "
-        "term, see What the literal drive does.",
+        "prescribed: at the rate of the ensemble, large grains that were spun up slower as well, of which a single one "
+        "has no error; it goes to 0 as the spin-up gets slower. literal: explicit Coriolis term, see What the literal "
+        "drive does.",
     )
 
 
@@ -243,7 +244,7 @@ def pairs(data):
 def _trend(pairs):
     """Row with the mean signed error of the undamped pairs."""
     error = pairs["signed"].dropna()
-    value = error.mean(), error.std() / np.sqrt(len(error))
+    value = mean_of(error)
     text = f"{with_error(*(100 * each for each in value))} % ({between(100 * error.min(), 100 * error.max())} %)"
     return Row("pairs_trend", {"": Answer(text, holds=lies_in(*value, 0.0))})
 

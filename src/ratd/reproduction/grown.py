@@ -68,7 +68,10 @@ def _porosity(table):
     )
     result = []
     for kind, own in table.groupby("type", sort=False):
-        means = {size * PM / NM: mean_of(part["porosity"]) for size, part in own.groupby(size_key(own["a_eff"]))}
+        means = {
+            size * PM / NM: mean_of(part["porosity"], cell_of(part))
+            for size, part in own.groupby(size_key(own["a_eff"]))
+        }
         least, greatest = min(means.values()), max(means.values())
         for key in (f"porosity_{kind}", f"porosity_{kind}_text"):
             if key in PRINTED:

@@ -90,10 +90,10 @@ def flattening_section(data):
     return "\n\n".join(
         [
             "Local slope d ln omega/d ln a_eff (300 nm counts on both sides; materials together, each with a level of "
-            "its own; ± from what each grain adds to the slope, the error HC3), of omega_disr, of the bound from cuts "
-            "through the contacts, and of Eq. 33 with the printed Table 3 for the grains grown here. A tensile "
-            "strength that depends on nothing but material gives -1; an asymptotic limit, of which the paper speaks "
-            "above 300 nm, gives 0, which its own fit does not have.",
+            "its own; ± from what each grain adds to the slope, the error HC3), of omega_disr, of the cut bound, and "
+            "of Eq. 33 with the printed Table 3 for the grains grown here. A tensile strength that depends on nothing "
+            "but material gives -1; an asymptotic limit, of which the paper speaks above 300 nm, gives 0, which its "
+            "own fit does not have.",
             markdown_table(head, rows),
             *_pace(data),
         ]

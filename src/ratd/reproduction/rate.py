@@ -8,7 +8,7 @@ from ratd.ensemble import cell_of
 from ratd.markdown import markdown_table, plural
 from ratd.parameters import MARKS
 from ratd.parameters import OWN as AS_IT_IS
-from ratd.reproduction.bounds import median_and_range, ratios, same_grains, sizes_of, table3_omega, whole_nm
+from ratd.reproduction.bounds import in_cell, median_and_range, ratios, same_grains, sizes_of, table3_omega, whole_nm
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import NOTHING, between, number, with_error
 from ratd.solid import solid_omega
@@ -101,11 +101,7 @@ def _drag_time(data):
         return []
     rate = OMEGA_RAT / HOUR
     table = with_literal_step(data, PRINTED_STEP)
-    cell = table[
-        (table["material"] == figure4["material"])
-        & (table["type"] == figure4["type"])
-        & (whole_nm(table) == round(figure4["size_nm"]))
-    ]
+    cell = in_cell(table, figure4)
     solid = median_of(solid_prediction(cell, rate))
     if not solid["n"]:
         return []

@@ -27,8 +27,8 @@ Numbers and figures were written by
     snakemake --cores 2 redraw
 
 from the files in `docs/reproduction/data`, where a README says how these were made; no number but the printed ones and
-the rules of “holds if” was typed by hand. "±" is a standard error; that of a median over several cells takes in the
-differences between them, and is an upper limit, as the cells that are meant are all there. A range in brackets behind
+the rules of “holds if” was typed by hand. "±" is a standard error; that of a median over several cells takes in how
+much the cells differ, though none of them is missing, and is an upper limit for that. A range in brackets behind
 a value is that from the 16th to the 84th percentile of the grains, called the middle two thirds, and a {confidence:g} %
 interval where the text says so. Angular velocities are in rad/s.
 
@@ -174,10 +174,10 @@ def _marks(data):
         level = median_of(table["omega_stress_max"] / printed, cell=cell_of(table))
         levels.append(f"{number(level['median'])} ({drive})")
     return (
-        f"Grains in which one contact was left before a quarter of the mass had gone: {', '.join(lacking)}; they are "
-        "missing in what is said of 25 % of the mass. Had the stress of a largest fragment with less than half of the "
-        f"mass counted, omega_disr would be greater in {', '.join(greater)} grains, and its median over Eq. 33 with "
-        f"the printed Table 3 {', '.join(levels)}."
+        "Grains without the mark of a quarter of the mass, as it was not lost before their run ended: "
+        f"{', '.join(lacking)}; they are missing in what is said of 25 % of the mass. Had the stress of a largest "
+        f"fragment with less than half of the mass counted, omega_disr would be greater in {', '.join(greater)} "
+        f"grains, and its median over Eq. 33 with the printed Table 3 {', '.join(levels)}."
     )
 
 

@@ -10,6 +10,8 @@ from ratd.reproduction.text import NOTHING, Answer, all_of, drive_rows, lies_in,
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
+ABOUT_HALF = (0.4, 0.6)
+"""Shares that count as a half."""
 ALIKE = 0.05
 """Difference of two mean porosities that counts as none."""
 REMNANTS = (
@@ -24,8 +26,8 @@ def rows(data):
     grown = {"": data.grown.assign(**{f"axis_{name}_start": data.grown[f"axis_{name}"] for name in "abc"})}
     tables = data.tables
     return [
-        drive_rows("half", grown, _oblate("start", 0.4, 0.6), _off_half(grown[""])),
-        drive_rows("oblate_start_200", grown, _oblate("start", 0.4, 0.6, 200)),
+        drive_rows("half", grown, _oblate("start", *ABOUT_HALF), _off_half(grown[""])),
+        drive_rows("oblate_start_200", grown, _oblate("start", *ABOUT_HALF, 200)),
         *(drive_rows(f"oblate_start_{size}", grown, _oblate("start", 0.3, 0.5, size)) for size in (350, 500)),
         drive_rows("c_over_b", grown, _slender),
         drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), EARLY),
@@ -40,10 +42,11 @@ def rows(data):
 
 def _off_half(table):
     """A sentence, if the share of oblate grains at rest is a half by the rule, but not within its error."""
-    share, error, _, n = oblate_share(table, "start")
-    off = abs(share - 0.5) / error if n and error > 0 else 0.0
+    share, error, *_ = oblate_share(table, "start")
+    if not lies_in(share, error, *ABOUT_HALF) or abs(share - 0.5) <= 2 * error:
+        return ""
     side = "prolate" if share < 0.5 else "oblate"
-    return f"About a half by the rule, yet {off:.0f} errors from it: more grains are {side}." if off > 2 else ""
+    return f"About a half by the rule, yet {abs(share - 0.5) / error:.0f} errors from it: more grains are {side}."
 
 
 def _chosen(table, sizes=None, types=None):

@@ -281,7 +281,7 @@ def _limit(rows):
 
 
 def rate_exponent(shift):
-    """d ln omega/d ln(d omega/dt) of a mark that lies above its slow limit by a shift that goes with `LAG_POWER`.
+    """d ln omega/d ln(d omega/dt) of a mark whose shift from its slow limit goes with epsilon^`LAG_POWER`.
 
     Parameters
     ----------
@@ -291,9 +291,14 @@ def rate_exponent(shift):
     Returns
     -------
     exponent, error : float
+
+    Notes
+    -----
+    With p = d ln omega/d ln epsilon it is p/(1 + 2 p), because d omega/dt = epsilon omega^2.
     """
     above = 1.0 + shift["median"]
-    return LAG_POWER * shift["median"] / above, LAG_POWER * shift["error"] / above**2
+    power, error = LAG_POWER * shift["median"] / above, LAG_POWER * shift["error"] / above**2
+    return power / (1.0 + 2.0 * power), error / (1.0 + 2.0 * power) ** 2
 
 
 def _percent(rows):

@@ -63,7 +63,11 @@ def rate_exponent(table, mark):
         Columns of `ratd.validation.literal.COLUMNS`.
     mark : str
     """
-    return median_of([power for power, _ in exponents(torn_backwards(with_reference(table), mark), mark)])
+    return _rate_exponent(torn_backwards(with_reference(table), mark), mark)
+
+
+def _rate_exponent(used, mark):
+    return median_of([power for power, _ in exponents(used, mark)])
 
 
 def exponents(rows, column):
@@ -220,7 +224,7 @@ def _law(rows, mark):
 def _verdict(rows):
     """A paragraph: which of the two readings of the explicit term holds."""
     used = torn_backwards(rows, MARK)
-    found = median_of([power for power, _ in exponents(used, MARK)])
+    found = _rate_exponent(used, MARK)
     shift = median_of(used[MARK] / used[f"true_{MARK}"], used["grain"])
     off = np.abs(used[MARK] / used[f"solid_{MARK}"] - 1.0)
     words = (

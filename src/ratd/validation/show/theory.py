@@ -64,12 +64,13 @@ def tell(table):
             f"{plural(len(table), 'grain')} of "
             + ", ".join(f"{a * 1e9:.0f}" for a in sorted(set(np.round(table["a_eff"], 12))))
             + " nm at the epsilon of production, against two estimates that need no simulation: the bound from the "
-            "weakest cut through the contacts (exact for the trees of BA as they stand; a grain that stretches is "
-            "farther from the axis and parts below it, one that makes new contacts may part above it), and the "
-            "angular velocity at which the mean tension at the mid-plane of a sphere equals the tensile strength of "
-            "Tatsuuma (2019). Given are medians over the grains with their standard error and, in brackets, the range "
-            "of 68 % of the grains. The bound is that of the whole grain: the first loss of mass is to be set beside "
-            "it, while omega_disr and the loss of a quarter belong to what is left, which may hold more.",
+            "weakest cut through the contacts (exact for the trees of BA as they stand if contacts only pull; a grain "
+            "that stretches is farther from the axis and parts below it, one that makes new contacts may part above "
+            "it), and the angular velocity at which the mean tension at the mid-plane of a sphere equals the tensile "
+            "strength of Tatsuuma (2019). Given are medians over the grains with their standard error and, in "
+            "brackets, the range of 68 % of the grains. The bound is that of the whole grain: the first loss of mass "
+            "is to be set beside it, while omega_disr and the loss of a quarter belong to what is left, which may hold "
+            "more.",
             markdown_table(header, rows),
             f"Correlation of ln omega_disr with ln of the cut bound {correlation['cut_bound']:.2f}, of the tensile "
             f"strength {correlation['midplane']:.2f}.",
