@@ -97,11 +97,8 @@ def bridge_pulls(load, contacts):
 
     Parameters
     ----------
-    load : (n, 2) float64 array
-        Pull on each monomer at omega = 1 rad/s, m_i times its place in the plane normal to the axis, from the common
-        centre of mass [kg m].
-    contacts : (k, 2) int64 array
-        Contacts of an aggregate in one piece.
+    load, contacts
+        As in `ratd.bound.least_bridge_cut`.
 
     Returns
     -------

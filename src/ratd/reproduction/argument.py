@@ -81,16 +81,37 @@ def bound_section(data):
     return "\n\n".join([*parts, markdown_table(head, rows), *_above_bound(data)])
 
 
+def printed_above(table, column):
+    """How many grains the printed Table 3 lies above a bound for.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `ratd.reproduction.bounds.ratios`.
+    column : str
+        printed_over_bound or printed_over_firm.
+
+    Returns
+    -------
+    count, known : int
+        Grains that it lies above the bound for, of those that both are known of.
+    load : float
+        Median of the load of the weakest cut over what it bears; all cells count alike.
+    """
+    there = table[table[column].notna()]
+    load = median_of(there[column] ** 2, cell=cell_of(there))["median"]
+    return int((there[column] > 1).sum()), len(there), load
+
+
 def _above(table):
     """A paragraph: how many grains the printed Table 3 lies above the two bounds for."""
     found = []
     for name, column in (("cut", "printed_over_bound"), ("firm", "printed_over_firm")):
-        known = table[table[column].notna()]
-        if len(known):
-            load = median_of(known[column] ** 2, cell=cell_of(known))["median"]
+        count, known, load = printed_above(table, column)
+        if known:
             found.append(
-                f"above the {name} bound for {int((known[column] > 1).sum())} of {plural(len(known), 'grain')} (in the "
-                f"median of all its load on the weakest cut is {number(load)} times what that bears)"
+                f"above the {name} bound for {count} of {plural(known, 'grain')} (in the median of all its load on the "
+                f"weakest cut is {number(load)} times what that bears)"
             )
     return f"Eq. 33 with the printed Table 3 lies {', and '.join(found)}. The load grows as omega²."
 

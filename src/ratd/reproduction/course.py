@@ -121,9 +121,9 @@ def _gain(table, printed):
 def _quarter(table, printed):
     parts, verdicts = [], []
     for kind, sizes, part in by_type_and_size(table):
-        ratio, cell = part["omega_mass_75"] / part["omega_disr"], cell_of(part)
-        own, found = _median_answer(ratio, printed, cell=cell), median_of(ratio, cell=cell)
-        if own:
+        found = median_of(part["omega_mass_75"] / part["omega_disr"], cell=cell_of(part))
+        if found["n"]:
+            own = answer(found["median"], found["error"], printed)
             parts.append(f"{kind} {sizes} {own.text} ({between(found['low'], found['high'])})")
             verdicts.append(own.holds)
     return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
@@ -138,13 +138,13 @@ def _whole(data):
     def row(key, part, holds, reason=""):
         def evaluate(source, printed):
             drive, runs = source
-            values = _masses(runs, part)
+            values = _left(runs, "mass", part)
             if not len(values):
                 return None
             middle = float(np.median(values))
             ends = f"{values.min():.3f}–{values.max():.3f} of {len(values)}" if len(values) > 1 else "one grain"
             text = f"{middle:.3f} ({ends})"
-            for value in _masses(shown.get(drive, []), part):
+            for value in _left(shown.get(drive, []), "mass", part):
                 text += f"; grain of Fig. 5 {value:.3f}"
             return Answer(text, over(middle, printed.value) if printed.value else NOTHING, holds(middle))
 
@@ -155,17 +155,15 @@ def _whole(data):
     )
     return [
         row("whole_01", 0.1, lambda middle: bool(middle > 1 - 1e-9)),
-        drive_rows("contacts_01", dict(data.course), lambda runs, p: _contacts_at(runs, 0.1), EARLY_CONTACTS),
+        drive_rows("contacts_01", course, lambda runs, p: _fewer_contacts(runs, 0.1), EARLY_CONTACTS),
         row("whole_08", 0.8, lambda middle: bool(middle < 1 - 1e-9), early),
         row("whole_10", 1.0, lambda middle: bool(middle < LARGER), early),
     ]
 
 
-def _contacts_at(runs, part):
-    """Answer with the contacts at a part of omega_disr over those at the start, of the cell of Fig. 4."""
-    marked = [(run, part * float(disruption(run)["omega_disr"])) for run in runs]
-    values = np.array([_at(run, "n_contacts", omega) / run.attrs["initial_n_contacts"] for run, omega in marked])
-    values = values[np.isfinite(values)]
+def _fewer_contacts(runs, part):
+    """Answer with the contacts at a part of omega_disr over those at the start."""
+    values = _left(runs, "n_contacts", part)
     if not len(values):
         return None
     middle = float(np.median(values))
@@ -173,20 +171,29 @@ def _contacts_at(runs, part):
     return Answer(text, holds=bool(middle < 1 - 1e-9))
 
 
-def _masses(runs, part):
-    """Mass of the largest fragment over that of the grain, at a part of omega_disr, of each run that has one."""
-    values = np.array(
-        [_at(run, "mass", part * float(mark["omega_disr"])) / run.attrs["initial_mass"] for run, mark in runs]
-    )
-    return values[np.isfinite(values)]
+def _left(runs, name, part):
+    """What the largest fragment has of the mass or the contacts of the grain at a part of omega_disr.
 
+    Parameters
+    ----------
+    runs : list of tuple
+        Runs and their marks.
+    name : str
+        mass or n_contacts.
+    part : float
 
-def _at(run, name, omega):
-    """What a run has of the largest fragment at the first record from omega [rad/s] on."""
-    if not np.isfinite(omega):
-        return np.nan
-    k = min(int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))), run.sizes["record"] - 1)
-    return float(run[name].values[k])
+    Returns
+    -------
+    numpy.ndarray
+        Over the value at the start, of each run that has an omega_disr; at the first record from that omega on.
+    """
+    values = []
+    for run, mark in runs:
+        omega = part * float(mark["omega_disr"])
+        if np.isfinite(omega):
+            k = min(int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))), run.sizes["record"] - 1)
+            values.append(float(run[name].values[k]) / run.attrs[f"initial_{name}"])
+    return np.array(values)
 
 
 def _up_to(monomers):

@@ -64,8 +64,10 @@ def _drag_time(data):
     """How omega_disr goes with the rate of the spin-up, from the checks of the validation."""
 
     def prescribed(table, printed):
-        found = [(kind, size, *convergence.rate_exponent(shifts["omega_disr"]))
-                 for kind, size, shifts in convergence.large_shifts(table)]  # fmt: skip
+        found = [
+            (kind, size, *convergence.rate_exponent(shift))
+            for kind, size, shift in convergence.large_shifts(table, "omega_disr")
+        ]
         if not found:
             return None
         text = "; ".join(f"{kind} {size:g} nm {with_error(*value)}" for kind, size, *value in found)

@@ -59,8 +59,7 @@ def bound(grown, tables, materials=None):
         strength, the firm bound where it is known, and omega_disr of each drive.
     """
     tables = {drive: ratios(table, materials) for drive, table in tables.items()}
-    firm = grown["firm_bound"] if "firm_bound" in grown else np.nan
-    first = ratios(grown, materials).assign(firm_over_bound=firm / grown["cut_bound"])
+    first = ratios(grown, materials).assign(firm_over_bound=grown.get("firm_bound", np.nan) / grown["cut_bound"])
     types = list(dict.fromkeys(first["type"]))
     figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, "angular velocities over the cut bound of the same grain")
     panels = figure.subplots(1, len(types), sharex=True, sharey=True, squeeze=False)[0]

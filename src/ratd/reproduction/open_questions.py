@@ -122,9 +122,8 @@ def _pace(data):
 
 def _tried(data):
     """Words on how much greater omega_disr is than with an infinitely slow spin-up."""
-    table = data.study("convergence")
-    found = large_shifts(table) if table is not None else []
-    parts = [f"{kind} {size:g} nm {percent(shifts['omega_disr'])} %" for kind, size, shifts in found]
+    found = large_shifts(data.study("convergence"), "omega_disr")
+    parts = [f"{kind} {size:g} nm {percent(shift)} %" for kind, size, shift in found]
     if not parts:
         return ""
     return f", above that of an infinitely slow one by {', '.join(parts)} (docs/validation.md, Convergence)"

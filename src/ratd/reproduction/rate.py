@@ -110,11 +110,10 @@ def _drag_time(data):
     words = (
         f"The paper does name omega_RAT = {number(OMEGA_RAT)} rad/s and a drag time “in the order of hours”, which "
         f"“does not impact the result” (Sects. 6 and 7). One hour is {number(rate)} rad/s² by Eq. 26, and "
-        f"{number(onset)} "
-        f"rad/s would be reached after {number(steps)} printed steps, so that the figures can hardly have been made "
-        "with it. Under the printed equations it is no detail: at that rate a solid grain of the cell of Fig. 4 would "
-        f"part at {with_error(solid['median'], solid['error'])} rad/s, {number(solid['median'] / onset)} times the "
-        "printed onset"
+        f"{number(onset)} rad/s would be reached after {number(steps)} printed steps, so that the figures can hardly "
+        "have been made with it. Under the printed equations it is no detail: at that rate a solid grain of the cell "
+        f"of Fig. 4 would part at {with_error(solid['median'], solid['error'])} rad/s, "
+        f"{number(solid['median'] / onset)} times the printed onset"
     )
     calibrated = np.nan if data.calibration is None else data.calibration["calibrated"].item()
     if np.isfinite(calibrated):

@@ -8,7 +8,7 @@ from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown
-from ratd.reproduction.argument import lammps_over_ratd, ratios_to_ratd
+from ratd.reproduction.argument import lammps_over_ratd, printed_above, ratios_to_ratd
 from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes, sizes_of, split_sizes
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
@@ -58,10 +58,10 @@ def summary(data, rows):
 
 def _answer(grown_ratios):
     """What it comes to, for someone who reads no further."""
-    over = grown_ratios["printed_over_firm"].dropna()
+    count, known, _ = printed_above(grown_ratios, "printed_over_firm")
     held = (
         "; what the contacts of a grain as grown can bear at most lies below the printed value for nearly all of them"
-        if len(over) and (over > 1).mean() > NEARLY_ALL
+        if count > NEARLY_ALL * known
         else ""
     )
     return (
@@ -139,15 +139,13 @@ def _level(name, table):
 
 
 def _bound(table):
-    known = table[table["printed_over_firm"].notna()]
-    if not len(known):
+    count, known, load = printed_above(table, "printed_over_firm")
+    if not known:
         return ""
-    over = known["printed_over_firm"]
-    load = median_of(over**2, cell=cell_of(known))
     return (
         "**What the contacts can hold**: the printed Table 3 lies above the firm bound, with everything counted that "
-        f"the contacts of a cut can bear, for {int((over > 1).sum())} of {plural(len(known), 'grain')} as grown; at "
-        f"that omega the cut would have to bear {number(load['median'])} times as much, in the median of all."
+        f"the contacts of a cut can bear, for {count} of {plural(known, 'grain')} as grown; at that omega the cut "
+        f"would have to bear {number(load)} times as much, in the median of all."
     )
 
 
@@ -169,19 +167,14 @@ def _lammps(data):
 
 def _spin_up_rate(data):
     """How far the spin-ups of large grains are from slow ones, where that was tried."""
-    table = data.study("convergence")
-    found = large_shifts(table) if table is not None else []
+    found = large_shifts(data.study("convergence"), "omega_disr")
     if not found or "prescribed" not in data.tables:
         return []
-    parts = [
-        f"{kind} of {size:g} nm {percent(shifts['omega_disr'])} % ({plural(shifts['omega_disr']['n'], 'grain')})"
-        for kind, size, shifts in found
-    ]
+    parts = [f"{kind} of {size:g} nm {percent(shift)} % ({plural(shift['n'], 'grain')})" for kind, size, shift in found]
     return [
         "**Spin-up rate, drive `prescribed`**: omega_disr lies above that of an infinitely slow spin-up, in large "
         f"grains that were tried by {', '.join(parts)}; of smaller ones docs/validation.md (Convergence) tells. That "
-        "is in no "
-        "± of this document."
+        "is in no ± of this document."
     ]
 
 

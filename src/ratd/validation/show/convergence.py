@@ -311,22 +311,24 @@ def percent(statistic):
     return measured(100 * statistic["median"], 100 * statistic["error"])
 
 
-def large_shifts(table):
-    """Shifts of the marks of large grains from the limit of a slow spin-up.
+def large_shifts(table, mark):
+    """Shifts of a mark of large grains from the limit of a slow spin-up.
 
     Parameters
     ----------
-    table : pandas.DataFrame
-        Columns of `ratd.validation.convergence.COLUMNS`.
+    table : pandas.DataFrame or None
+        Columns of `ratd.validation.convergence.COLUMNS`; None where the check was not made.
+    mark : str
 
     Returns
     -------
     list of (str, float, dict)
-        Type, size [nm], and mark of `IN_CELLS` -> what `shift_from_limit` gives.
+        Type, size [nm], and what `shift_from_limit` gives.
     """
-    rows = ratios(table, "epsilon_large")
+    if table is None:
+        return []
     return [
-        (kind, size, {mark: shift_from_limit(part, mark) for mark in IN_CELLS}) for (kind, size), part in _by_cell(rows)
+        (kind, size, shift_from_limit(part, mark)) for (kind, size), part in _by_cell(ratios(table, "epsilon_large"))
     ]
 
 
