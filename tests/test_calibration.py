@@ -51,10 +51,26 @@ def test_marks_of_real_runs_lie_in_order(runs, table):
 def test_runs_with_another_step_stand_for_the_printed_one(table):
     """The same d omega/dt over the step: the onset of this grain differs by 5 % where d omega/dt differs by 2.5."""
     pairs = step_ratios(table)
-    assert pairs[["seed", "timestep_factor", "shortest_factor"]].values.tolist() == [[0, 0.05, 0.02]]
+    assert pairs[["seed", "timestep_factor", "shorter_factor"]].values.tolist() == [[0, 0.05, 0.02]]
     ratio = table["omega_mass_99"][1] / table["omega_mass_99"][0]
     assert pairs["ratio"].tolist() == [ratio] and ratio == pytest.approx(1.0, abs=0.05)
     assert not len(step_ratios(table[table["timestep_factor"] == 0.05]))
+
+
+def test_each_two_steps_of_a_grain_are_compared():
+    rows = [(0, 0.02, 1.0), (0, 0.05, 1.1), (0, 0.125, 1.32), (1, 0.05, 2.0), (1, 0.125, 2.2), (1, 0.25, np.nan)]
+    table = pd.DataFrame(rows, columns=["seed", "timestep_factor", "omega_mass_99"]).sample(frac=1, random_state=0)
+    # the same but for the last digit
+    table["printed_acceleration"] = (2e13 / table["timestep_factor"]) * table["timestep_factor"]
+    pairs = step_ratios(table).set_index(["seed", "timestep_factor", "shorter_factor"])["ratio"].to_dict()
+    expected = {(0, 0.05, 0.02): 1.1, (0, 0.125, 0.02): 1.32, (0, 0.125, 0.05): 1.2, (1, 0.125, 0.05): 1.1}
+    assert pairs == pytest.approx(expected)
+
+
+def test_of_equally_slow_runs_that_with_the_shortest_step_is_taken_for_the_law():
+    table = made_up(1 / 3, accelerations=(1e15, 1e15 * (1 - 1e-12), 4e15)).assign(timestep_factor=[0.02, 0.125, 0.125])
+    table["omega_mass_99"] *= [1.0, 2.0, 1.0]
+    assert float(calibrate(table, 1e5)["calibrated_by_law"]) == pytest.approx((1e5 / 2.0) ** 3)
 
 
 def test_a_power_law_is_found_and_inverted():

@@ -11,6 +11,8 @@ from ratd.materials import MATERIALS
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 
 ROOT = Path(__file__).parents[1]
+PACE = {"angular_acceleration": 1e15, "timestep_factor": 0.1}
+"""Of a run of the calibration."""
 DEFAULT, QUICK = ROOT / "config" / "config.yaml", ROOT / "config" / "quick.yaml"
 
 
@@ -140,6 +142,12 @@ def test_quick_is_three_of_each():
             "the key figures.calibration.runs[0].timestep_factor is missing",
             "at most 1",
         ),
+        (
+            {"figures": {"calibration": {"runs": [PACE, PACE | {"reach": 0.8}]}}},
+            "figures.calibration.runs[1] has the angular_acceleration and timestep_factor of an earlier one",
+            "each pair once",
+        ),
+        ({"figures": {"calibration": {"runs": [PACE | {"reach": 0}]}}}, "calibration.runs[0].reach is 0", "above 0"),
         ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
         ({"results": ""}, "results is ''", "a folder"),
         ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
@@ -310,6 +318,17 @@ def test_the_literal_paces_of_the_config_have_one_ratio():
     first, second = config["literal"], config["figures"]["figure9"]["literal"]
     ratio = first["angular_acceleration"] / first["timestep_factor"]
     assert second["angular_acceleration"] / second["timestep_factor"] == pytest.approx(ratio)
+
+
+def test_a_run_of_the_calibration_may_have_seeds_and_an_end_of_its_own():
+    other = PACE | {"timestep_factor": 0.2, "seeds": {"first": 3, "number": 2}, "reach": 0.5}
+    plan = with_changes({"figures": {"calibration": {"runs": [PACE, other]}}})
+    own = plan.config["figures"]["calibration"]
+    common, special = (plan.calibration_runs(label)[0] for label in plan.calibration_labels)
+    assert (common["seeds"], common["reach"]) == (list(range(own["seeds"]["number"])), own["reach"])
+    assert (special["seeds"], special["reach"], special["spin_up"]["timestep_factor"]) == ([3, 4], 0.5, 0.2)
+    assert not {"seeds", "reach"} & set(special["spin_up"])
+    assert special["grain"] == common["grain"]
 
 
 def test_epsilon_is_one_for_all_types_or_one_for_each():

@@ -207,7 +207,7 @@ def test_studies_are_told_from_their_columns(folder):
     assert f"| {FORMULAE['damping']} | BA | 0.600 ± 0.0" in text and "| 0.8 | 3 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs of 1 grain" in text
     assert "it is 3.60e13 rad/s² from the slowest run of each grain" in text
-    assert "in 1 pair of runs of the same grain the onset with f = 0.1 lies at 1.1 times that with f = 0.02" in text
+    assert "in pairs of runs of the same grain: 1.1000 (f = 0.1 over f = 0.02, 1 pair)." in text
 
 
 def test_grains_of_fig_9_are_set_beside_themselves_with_the_step_of_the_ensemble(folder):

@@ -65,7 +65,10 @@ FIT_VALUES = {
     "calibrated": ("rad s-2", "d omega/dt at which the mean onset is the wanted one, at the printed step factor"),
     "calibrated_low": ("rad s-2", "calibrated d omega/dt, one standard error lower"),
     "calibrated_high": ("rad s-2", "calibrated d omega/dt, one standard error higher"),
-    "calibrated_by_law": ("rad s-2", "the same with the exponent 1/3, from the least d omega/dt of each grain"),
+    "calibrated_by_law": (
+        "rad s-2",
+        "the same with the exponent 1/3, from the slowest run of each grain, of equally slow ones that of the least f",
+    ),
 }
 """Units and meaning of what `calibrate` gives."""
 
@@ -120,17 +123,21 @@ def step_ratios(table, mark=ONSET):
     Returns
     -------
     pandas.DataFrame
-        One row a run with a longer step than another of the same grain: seed, printed_acceleration, timestep_factor,
-        shortest_factor (of the run that it is compared with, the one with the shortest step), ratio.
+        One row for two runs of the same grain: seed, printed_acceleration, timestep_factor (of the run with the longer
+        step), shorter_factor, ratio.
     """
     key = ["seed", "printed_acceleration"]
-    own = table.assign(printed_acceleration=[float(f"{value:.6g}") for value in table["printed_acceleration"]])
-    own = own[own[mark].notna()]
-    shortest = own.loc[own.groupby(key)["timestep_factor"].idxmin(), [*key, "timestep_factor", mark]]
-    pairs = own.merge(shortest.rename(columns={"timestep_factor": "shortest_factor", mark: "shortest"}), on=key)
-    pairs = pairs[pairs["timestep_factor"] > pairs["shortest_factor"]]
-    pairs = pairs.assign(ratio=pairs[mark] / pairs["shortest"])
-    return pairs[[*key, "timestep_factor", "shortest_factor", "ratio"]].reset_index(drop=True)
+    own = table.assign(printed_acceleration=_rounded(table["printed_acceleration"]))
+    own = own.loc[own[mark].notna(), [*key, "timestep_factor", mark]]
+    pairs = own.merge(own.rename(columns={"timestep_factor": "shorter_factor", mark: "shorter"}), on=key)
+    pairs = pairs[pairs["timestep_factor"] > pairs["shorter_factor"]]
+    pairs = pairs.assign(ratio=pairs[mark] / pairs["shorter"])
+    return pairs[[*key, "timestep_factor", "shorter_factor", "ratio"]].reset_index(drop=True)
+
+
+def _rounded(rate):
+    """d omega/dt, a Series, without the last digits, in which equal ones of runs with different steps differ."""
+    return rate.map(lambda value: float(f"{value:.6g}"))
 
 
 def calibrate(table, omega_onset, mark=ONSET):
@@ -168,7 +175,8 @@ def calibrate(table, omega_onset, mark=ONSET):
     others = [grain != k for k in range(len(own))]
     left_out = np.array([_inverted(x[k], y[k], grain[k], np.log(omega_onset)) for k in others]).reshape(-1, 2)
     exponent_error, error = (jackknife_error(values) for values in left_out.T)
-    least = there.loc[there.groupby("seed")["printed_acceleration"].idxmin()]
+    least = there.assign(rate=_rounded(there["printed_acceleration"])).sort_values(["rate", "timestep_factor"])
+    least = least.drop_duplicates("seed")
     by_law = np.log(least["printed_acceleration"]) + np.log(omega_onset / least[mark]) / LAW_EXPONENT
     answers = {
         "calibrated": answer,

@@ -308,6 +308,12 @@ def check(config, schemas="config/schema"):
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
+        for k, label in enumerate(plan.calibration_labels):
+            if label in plan.calibration_labels[:k]:
+                raise InputError(
+                    f"config: figures.calibration.runs[{k}] has the angular_acceleration and timestep_factor of an "
+                    "earlier one; allowed: each pair once, for whichever seeds"
+                )
     own = config["figures"]["formulae"]
     if own is not None:
         for kind in own["types"]:
@@ -774,11 +780,13 @@ class Plan:
     def calibration_runs(self, label):
         """Settings of the runs of the calibration at one angular acceleration and step, in a list of one way.
 
-        The cell is that of the config, and so are all other settings of the literal drive.
+        The cell is that of the config, and so are all other settings of the literal drive. `seeds` and `reach` of the
+        runs themselves stand over those of the study.
         """
         own = self.config["figures"]["calibration"]
+        own = own | next(run for run in own["runs"] if _calibration_label(run) == label)
         first = own["seeds"]["first"]
-        pace = {"epsilon": None} | next(run for run in own["runs"] if _calibration_label(run) == label)
+        pace = {"epsilon": None} | {name: own[name] for name in ("angular_acceleration", "timestep_factor")}
         return [
             {
                 "grain": self.grow(own["material"], own["type"], size_label(own["size_nm"])),
