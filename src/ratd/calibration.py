@@ -24,6 +24,7 @@ __all__ = [
     "calibration_table",
     "onset",
     "printed_acceleration",
+    "same_rate",
     "step_ratios",
 ]
 
@@ -78,6 +79,11 @@ def printed_acceleration(angular_acceleration, timestep_factor):
     return angular_acceleration * PRINTED_STEP / timestep_factor
 
 
+def same_rate(rate):
+    """d omega/dt, a Series, without the last digits, in which equal ones of runs with different steps differ."""
+    return rate.map(lambda value: float(f"{value:.6g}"))
+
+
 def onset(run):
     """omega [rad/s] at which a spin-up run has lost `ONSET_LOSS` of its initial mass; NaN where it has not."""
     gone = run["mass"].values <= (1.0 - ONSET_LOSS) * run.attrs["initial_mass"]
@@ -127,17 +133,12 @@ def step_ratios(table, mark=ONSET):
         step), shorter_factor, ratio.
     """
     key = ["seed", "printed_acceleration"]
-    own = table.assign(printed_acceleration=_rounded(table["printed_acceleration"]))
+    own = table.assign(printed_acceleration=same_rate(table["printed_acceleration"]))
     own = own.loc[own[mark].notna(), [*key, "timestep_factor", mark]]
     pairs = own.merge(own.rename(columns={"timestep_factor": "shorter_factor", mark: "shorter"}), on=key)
     pairs = pairs[pairs["timestep_factor"] > pairs["shorter_factor"]]
     pairs = pairs.assign(ratio=pairs[mark] / pairs["shorter"])
     return pairs[[*key, "timestep_factor", "shorter_factor", "ratio"]].reset_index(drop=True)
-
-
-def _rounded(rate):
-    """d omega/dt, a Series, without the last digits, in which equal ones of runs with different steps differ."""
-    return rate.map(lambda value: float(f"{value:.6g}"))
 
 
 def calibrate(table, omega_onset, mark=ONSET):
@@ -175,7 +176,7 @@ def calibrate(table, omega_onset, mark=ONSET):
     others = [grain != k for k in range(len(own))]
     left_out = np.array([_inverted(x[k], y[k], grain[k], np.log(omega_onset)) for k in others]).reshape(-1, 2)
     exponent_error, error = (jackknife_error(values) for values in left_out.T)
-    least = there.assign(rate=_rounded(there["printed_acceleration"])).sort_values(["rate", "timestep_factor"])
+    least = there.assign(rate=same_rate(there["printed_acceleration"])).sort_values(["rate", "timestep_factor"])
     least = least.drop_duplicates("seed")
     by_law = np.log(least["printed_acceleration"]) + np.log(omega_onset / least[mark]) / LAW_EXPONENT
     answers = {

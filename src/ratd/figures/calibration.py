@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.calibration import MARKS, ONSET, PRINTED_STEP
+from ratd.calibration import MARKS, ONSET, PRINTED_STEP, same_rate
 from ratd.errors import InputError
 from ratd.figures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, styled
 from ratd.markdown import plural
@@ -46,8 +46,8 @@ def calibration(table, fit):
     cell = f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm"
     figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{cell}, {runs}\ndrive: literal, f = {steps}")
     axes = figure.subplots()
-    for rate in table["printed_acceleration"].map("{:.6g}".format).unique():
-        axes.axvline(float(rate), color="0.85", lw=0.8, zorder=0)
+    for rate in same_rate(table["printed_acceleration"]).unique():
+        axes.axvline(rate, color="0.85", lw=0.8, zorder=0)
     places = _side_by_side(table)
     for name, meaning in MARKS.items():
         there = table[name].notna()
@@ -77,7 +77,7 @@ def calibration(table, fit):
 def _side_by_side(table):
     """d omega/dt of each run, moved a little so that those with the same one can be told apart."""
     x = table["printed_acceleration"]
-    same = x.map("{:.6g}".format)
+    same = same_rate(x)
     order = table.sort_values(["seed", "timestep_factor"]).groupby(same).cumcount()
     return x * SPREAD ** (order - (same.map(same.value_counts()) - 1) / 2)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.calibration import PRINTED_STEP, printed_acceleration, step_ratios
+from ratd.calibration import PRINTED_STEP, printed_acceleration, same_rate, step_ratios
 from ratd.drives import OMEGA_RAT
 from ratd.ensemble import cell_of
 from ratd.markdown import markdown_table, plural
@@ -91,7 +91,7 @@ def _steps(pairs):
 
 def _rates(runs, calibrated):
     """A sentence: which d omega/dt the runs had, and whether the calibrated one lies outside."""
-    rates = sorted({float(f"{rate:.6g}") for rate in runs["printed_acceleration"]})
+    rates = sorted(same_rate(runs["printed_acceleration"]).unique())
     words = f"The runs stand for {', '.join(map(number, rates))} rad/s²"
     if np.isfinite(calibrated) and not rates[0] <= calibrated <= rates[-1]:
         nearest = rates[0] if calibrated < rates[0] else rates[-1]
