@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-import test_pipeline
+import tiny_pipeline
 from ratd import io
 from ratd.cuda import device
 from ratd.cuda.arena import Batch
@@ -78,7 +78,7 @@ def test_missing_gpu_is_one_sentence():
 
 @no_gpu
 def test_pipeline_without_gpu_ends_with_one_sentence_before_any_job(tmp_path):
-    pipeline = test_pipeline.Pipeline(tmp_path)
+    pipeline = tiny_pipeline.Pipeline(tmp_path)
     pipeline.write_config(TINY | {"engine": "cuda"})
     done = pipeline.run()
     assert done.returncode != 0
@@ -92,7 +92,7 @@ def test_pipeline_writes_the_files_of_the_other_engine(tmp_path):
     files = {}
     for engine in ("cpu", "cuda"):
         (tmp_path / engine).mkdir()
-        pipeline = test_pipeline.Pipeline(tmp_path / engine)
+        pipeline = tiny_pipeline.Pipeline(tmp_path / engine)
         pipeline.environment |= SIMULATED
         (pipeline.folder / "tiny.yaml").write_text(yaml.safe_dump(TINY | {"engine": engine}))
         planned = pipeline.planned("spinups")

@@ -4,10 +4,7 @@ import os
 import re
 import shutil
 import signal
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import pytest
 import yaml
@@ -15,45 +12,8 @@ import yaml
 from ratd import io
 from ratd.partial import partial_folder
 from ratd.provenance import file_hash
+from tiny_pipeline import ROOT, TINY, Pipeline
 
-ROOT = Path(__file__).parents[1]
-TINY = {
-    "results": "results/tiny",
-    "materials": ["q-S"],
-    "types": ["BA", "BAM2"],
-    "sizes_nm": [50],
-    "seeds": {"first": 0, "number": 6},
-    "block_size": 6,
-    "small_grains": None,
-    "spin_up": {"epsilon": 0.2},
-    "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
-    "ensemble": {"bootstrap": 20},
-    "figures": {
-        "figure1": {"sizes_nm": [50]},
-        "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
-        "figure5": {"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1},
-        "figure6": {"material": "q-S", "sizes_nm": [50]},
-        "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
-        "figure9": {
-            "material": "q-S",
-            "types": ["BAM2"],
-            "sizes_nm": [50],
-            "seeds": {"first": 0, "number": 1},
-            "xi_c_nm": [6.4],
-            "T_vis_ps": [9],
-            "epsilon": 0.2,
-            "timestep_factor": 0.1,
-            "literal": {"angular_acceleration": 1.0e17, "timestep_factor": 0.1},
-        },
-        "calibration": {
-            "size_nm": 50,
-            "seeds": {"number": 1},
-            "runs": [{"angular_acceleration": rate, "timestep_factor": 0.02} for rate in (1e17, 3e17)],
-        },
-        "formulae": None,
-        "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
-    },
-}
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"
 RUNS = "results/tiny/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.nc"
 FIGURES = {"figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "grain_page"}
@@ -62,71 +22,6 @@ OF_SNAPSHOTS = {"figure5", "grain_page"}
 OF_RUNS = {"figure4"} | OF_SNAPSHOTS
 OF_STUDIES = {"figure9", "calibration_figure"}
 STUDIES = {"parameters", "parameter_table", "calibration_runs", "calibration"}
-
-
-class Pipeline:
-    """The pipeline in a folder of its own, with ratd as installed or, once `own_source` was called, a copy of it."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.environment = dict(os.environ)
-        for name in ("config", "profiles", "workflow"):
-            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copy(ROOT / "Snakefile", folder)
-        self.write_config(TINY)
-
-    def write_config(self, config):
-        (self.folder / "tiny.yaml").write_text(yaml.safe_dump(config))
-
-    def own_source(self):
-        """Copy ratd into the folder, so that a test can change it."""
-        source = self.folder / "src"
-        if not source.exists():
-            shutil.copytree(ROOT / "src" / "ratd", source / "ratd", ignore=shutil.ignore_patterns("__pycache__"))
-            self.environment["PYTHONPATH"] = str(source)
-        return source / "ratd"
-
-    def command(self, *arguments):
-        return [sys.executable, "-m", "snakemake", "--cores", "2", *arguments, "--configfile", "tiny.yaml"]
-
-    def run(self, *arguments):
-        return subprocess.run(
-            self.command(*arguments),
-            cwd=self.folder,
-            env=self.environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=600,
-        )
-
-    def start(self, *arguments):
-        with open(self.folder / "output.txt", "w") as output:
-            return subprocess.Popen(
-                self.command(*arguments),
-                cwd=self.folder,
-                env=self.environment,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
-
-    def planned(self, *arguments):
-        """Names of the rules that would run -> number of jobs."""
-        done = self.run("--dry-run", *arguments)
-        assert done.returncode == 0, done.stdout
-        if "Nothing to be done" in done.stdout:
-            return {}
-        table = done.stdout.split("Job stats:")[1].split("total")[0]
-        return {rule: int(n) for rule, n in re.findall(r"^([\w-]+) +(\d+)$", table, re.M) if rule != "all"}
-
-    def files(self):
-        """Path of every result -> hash of its content; not the logs and benchmarks, which tell the time."""
-        return {
-            str(path.relative_to(self.folder)): file_hash(path)
-            for path in sorted((self.folder / "results").rglob("*"))
-            if path.is_file() and not {"logs", "benchmarks"} & set(path.parts)
-        }
 
 
 def edit(path, old, new):
@@ -269,12 +164,16 @@ def wait_for(found, process, seconds=300):
 
 
 def test_kill_in_the_middle_then_the_same_command_again(finished, tmp_path):
-    """On one core, killed twice: in the middle of a block with all its processes, and Snakemake alone."""
+    """On one core, killed twice: in the middle of a block with all its processes, and Snakemake alone.
+
+    Up to the tables of the ensemble, from which the rest is made as without a kill.
+    """
     pipeline = Pipeline(tmp_path)
+    command = ("tables", "--cores", "1")
     for stage in (GRAINS, RUNS):
         target = tmp_path / stage
         folder = partial_folder(target)
-        process = pipeline.start("--cores", "1")
+        process = pipeline.start(*command)
         wait_for(lambda folder=folder: len(list(folder.glob("seed_*.nc"))) >= 1, process)
         if stage == RUNS:
             os.killpg(process.pid, signal.SIGKILL)
@@ -285,14 +184,16 @@ def test_kill_in_the_middle_then_the_same_command_again(finished, tmp_path):
     assert not target.exists() and len(pieces) == 1
     assert list((tmp_path / ".snakemake" / "locks").iterdir())  # what Snakemake would ask to be unlocked
 
-    process = pipeline.start("--cores", "1")
+    process = pipeline.start(*command)
     wait_for(target.exists, process)
     for name, time_written in pieces.items():
         assert (folder / name).stat().st_mtime_ns == time_written
     assert process.wait(timeout=600) == 0, (tmp_path / "output.txt").read_text()
     log = (tmp_path / "results/tiny/logs/spinup/prescribed/q-S/BAM2/50nm/seeds_0-5.log").read_text()
     assert f"{len(pieces)} of them were finished before" in log
-    assert pipeline.files() == finished.files()
+    found, expected = pipeline.files(), finished.files()
+    assert {RUNS, "results/tiny/ensemble/prescribed/table3.nc"} <= set(found)
+    assert found == {name: expected[name] for name in found}
 
 
 def test_damaged_input_ends_its_job_with_a_name_and_touches_nothing_else(copy_of):
@@ -352,56 +253,3 @@ def test_report_is_one_page_with_captions(finished, tmp_path):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"materials": ["x-S"]}, "materials[0] is 'x-S'; allowed: a-C"),
-        ({"types": ["BAM9"]}, "types[0] is 'BAM9'; allowed: BA, BAM1 or BAM2"),
-        ({"sizes_nm": [-50]}, "sizes_nm[0] is -50; allowed: "),
-        ({"sizes_nm": [12]}, "sizes_nm[0] is 12; allowed: above 12.6 nm"),
-        ({"block_size": 0}, "block_size is 0; allowed: a whole number of 1 or more"),
-        ({"blocksize": 5}, "the key 'blocksize' is unknown; allowed: "),
-    ],
-)
-def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, said):
-    pipeline = Pipeline(tmp_path)
-    pipeline.write_config(TINY | change)
-    done = pipeline.run()
-    assert done.returncode != 0
-    # before it stand two remarks of Snakemake, which profile and which config file it uses
-    *remarks, sentence = [line for line in done.stdout.splitlines() if line]
-    assert sentence.startswith(f"config: {said}")
-    assert len(remarks) == 2 and "rror" not in "".join(remarks)
-    assert not (tmp_path / "results").exists()
-
-
-def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):
-    pipeline = Pipeline(tmp_path)
-    pipeline.write_config(TINY)
-    config = tmp_path / "config" / "config.yaml"
-    config.write_text(config.read_text().replace("block_size: 10\n", "block_size: [10\n"))
-    done = pipeline.run()
-    *_, sentence = [line for line in done.stdout.splitlines() if line]
-    assert done.returncode != 0
-    assert re.match(r"config/config.yaml: line \d+: is not YAML", sentence)
-
-
-@pytest.mark.parametrize(("fewer", "jobs"), [({"drives": ["literal"], "number": 2}, {"grown": 1}), ({"number": 2}, {})])
-def test_figures_show_all_grown_grains_if_these_are_grown_anyway(tmp_path, fewer, jobs):
-    """One drive of two leaves some out; where both do, no grain is grown for a figure."""
-    pipeline = Pipeline(tmp_path)
-    seeds = {"first": 0, "number": 4, "fewer": [fewer]}
-    pipeline.write_config(TINY | {"drives": ["prescribed", "literal"], "seeds": seeds, "block_size": 2})
-    planned = pipeline.planned("results/tiny/figures/figure7_literal.png", "results/tiny/figures/figure8_literal.png")
-    assert {rule: n for rule, n in planned.items() if rule == "grown"} == jobs
-    assert planned["grow"] == (4 if jobs else 2)
-
-
-def test_full_paper_is_planned(tmp_path):
-    pipeline = Pipeline(tmp_path)
-    (tmp_path / "tiny.yaml").write_text("{}\n")
-    planned = pipeline.planned()
-    # 4 sizes up to 200 nm, 30 seeds a job, and 7 larger ones, 10 seeds a job
-    assert planned["grow"] == planned["spin_up"] == 9 * (4 + 7 * 3) and planned["disrupt"] == 99

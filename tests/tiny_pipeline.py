@@ -1,0 +1,116 @@
+"""The pipeline in a folder of its own, on a few very small grains, for tests of it as a whole."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+from ratd.provenance import file_hash
+
+ROOT = Path(__file__).parents[1]
+TINY = {
+    "results": "results/tiny",
+    "materials": ["q-S"],
+    "types": ["BA", "BAM2"],
+    "sizes_nm": [50],
+    "seeds": {"first": 0, "number": 6},
+    "block_size": 6,
+    "small_grains": None,
+    "spin_up": {"epsilon": 0.2},
+    "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
+    "ensemble": {"bootstrap": 20},
+    "figures": {
+        "figure1": {"sizes_nm": [50]},
+        "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
+        "figure5": {"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1},
+        "figure6": {"material": "q-S", "sizes_nm": [50]},
+        "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
+        "figure9": {
+            "material": "q-S",
+            "types": ["BAM2"],
+            "sizes_nm": [50],
+            "seeds": {"first": 0, "number": 1},
+            "xi_c_nm": [6.4],
+            "T_vis_ps": [9],
+            "epsilon": 0.2,
+            "timestep_factor": 0.1,
+            "literal": {"angular_acceleration": 1.0e17, "timestep_factor": 0.1},
+        },
+        "calibration": {
+            "size_nm": 50,
+            "seeds": {"number": 1},
+            "runs": [{"angular_acceleration": rate, "timestep_factor": 0.02} for rate in (1e17, 3e17)],
+        },
+        "formulae": None,
+        "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
+    },
+}
+
+
+class Pipeline:
+    """The pipeline in a folder of its own, with ratd as installed or, once `own_source` was called, a copy of it."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.environment = dict(os.environ)
+        for name in ("config", "profiles", "workflow"):
+            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copy(ROOT / "Snakefile", folder)
+        self.write_config(TINY)
+
+    def write_config(self, config):
+        (self.folder / "tiny.yaml").write_text(yaml.safe_dump(config))
+
+    def own_source(self):
+        """Copy ratd into the folder, so that a test can change it."""
+        source = self.folder / "src"
+        if not source.exists():
+            shutil.copytree(ROOT / "src" / "ratd", source / "ratd", ignore=shutil.ignore_patterns("__pycache__"))
+            self.environment["PYTHONPATH"] = str(source)
+        return source / "ratd"
+
+    def command(self, *arguments):
+        return [sys.executable, "-m", "snakemake", "--cores", "2", *arguments, "--configfile", "tiny.yaml"]
+
+    def run(self, *arguments):
+        return subprocess.run(
+            self.command(*arguments),
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=600,
+        )
+
+    def start(self, *arguments):
+        with open(self.folder / "output.txt", "w") as output:
+            return subprocess.Popen(
+                self.command(*arguments),
+                cwd=self.folder,
+                env=self.environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    def planned(self, *arguments):
+        """Names of the rules that would run -> number of jobs."""
+        done = self.run("--dry-run", *arguments)
+        assert done.returncode == 0, done.stdout
+        if "Nothing to be done" in done.stdout:
+            return {}
+        table = done.stdout.split("Job stats:")[1].split("total")[0]
+        return {rule: int(n) for rule, n in re.findall(r"^([\w-]+) +(\d+)$", table, re.M) if rule != "all"}
+
+    def files(self):
+        """Path of every result -> hash of its content; not the logs and benchmarks, which tell the time."""
+        return {
+            str(path.relative_to(self.folder)): file_hash(path)
+            for path in sorted((self.folder / "results").rglob("*"))
+            if path.is_file() and not {"logs", "benchmarks"} & set(path.parts)
+        }
