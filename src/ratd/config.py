@@ -308,8 +308,9 @@ def check(config, schemas="config/schema"):
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
-        for k, label in enumerate(plan.calibration_labels):
-            if label in plan.calibration_labels[:k]:
+        labels = plan.calibration_labels
+        for k, label in enumerate(labels):
+            if label in labels[:k]:
                 raise InputError(
                     f"config: figures.calibration.runs[{k}] has the angular_acceleration and timestep_factor of an "
                     "earlier one; allowed: each pair once, for whichever seeds"
