@@ -10,8 +10,6 @@ from 10 nm on of the materials of the paper, it lies above the cut bound.
 import math
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order
 
 from ratd._accelerate import jit
 from ratd.bound import contact_strengths, plane_normals
@@ -115,6 +113,10 @@ def bridge_pulls(load, contacts):
     power of two of its own, counted with opposite signs at its two ends: the sum beyond a contact of the tree is 0 only
     where no other contact leads back.
     """
+    # not at the head: the registry of all files reads this module, and every job would wait for scipy
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order
+
     n = len(load)
     graph = coo_array((np.ones(len(contacts)), contacts.T), shape=(n, n)).tocsr()
     order, above = breadth_first_order(graph, 0, directed=False)
