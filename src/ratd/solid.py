@@ -1,5 +1,7 @@
 """A grain under the printed equations, the drive literal: how it turns, and where a solid one parts."""
 
+from functools import cache
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -43,6 +45,7 @@ def turned_by_spins(omega, share, axis_b, axis_c):
     return share * np.asarray(omega) * moment[0] / moment
 
 
+@cache  # the document asks for the same grains in several places
 def solid_omega(threshold, share, acceleration, timestep):
     """Angular velocity of the frame at which a solid grain parts under the printed equations, explicit Coriolis term.
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ratd import io
+from ratd.beyond import LEFT_OUT, cross_validation
 from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
 from ratd.ensemble import size_key
@@ -161,6 +162,15 @@ class Data:
     def fits(self):
         """Drive -> fit of Eq. 33 beside Table 3."""
         return self._each_drive("ensemble/{drive}/table3.nc", io.read_fit)
+
+    @cached_property
+    def predictions(self):
+        """Drive -> what grains are left out by -> scatter of the predictors, see `ratd.beyond.cross_validation`."""
+        materials = self.plan.materials
+        return {
+            drive: {by: cross_validation(table, by=by, materials=materials) for by in LEFT_OUT}
+            for drive, table in self.tables.items()
+        }
 
     @cached_property
     def fragments(self):

@@ -3,10 +3,10 @@
 import numpy as np
 
 from ratd.beyond import (
+    LEFT_OUT,
     MONOMER_CLASSES,
     PREDICTORS,
     SPLIT,
-    cross_validation,
     fragment_shares,
     oblate_counts,
     power_law,
@@ -24,7 +24,6 @@ JUSTIFIED = 0.1
 """Probability below which a power law is not given (Clauset et al. 2009)."""
 FEWEST = 50
 """Fragments below which nothing is said of a power law."""
-LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out"}
 
 
 def predictor_section(data):
@@ -36,10 +35,10 @@ def predictor_section(data):
         + "; ".join(f"{name}: {text}" for name, text in PREDICTORS.items())
         + "."
     ]
-    for drive, table in data.tables.items():
+    for drive, predictions in data.predictions.items():
         rows = []
         for by, how in LEFT_OUT.items():
-            found = cross_validation(table, by=by, materials=data.plan.materials)
+            found = predictions[by]
             for kind, part in found.groupby("type", sort=False):
                 own = part.set_index("predictor")
                 cells = [with_error(own.loc[name, "scatter"], own.loc[name, "error"]) for name in PREDICTORS]

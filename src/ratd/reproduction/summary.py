@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ratd.beyond import SPLIT, cross_validation, slopes
+from ratd.beyond import SPLIT, slopes
 from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
@@ -51,7 +51,7 @@ def summary(data, rows):
         )
         lines.append(_level(name, calibrated))
     lines += _spin_up_rate(data)
-    lines += [_prediction(drive, table, data.plan.materials) for drive, table in tables.items()]
+    lines += [_prediction(drive, data.predictions[drive]["size"]) for drive in tables]
     lines += [*_table3(data), *_verdicts(rows, list(tables)), _composition(), *_grains(data)]
     return "\n\n".join(["\n".join(f"- {line}" for line in lines if line), _flattening(data)])
 
@@ -178,9 +178,8 @@ def _spin_up_rate(data):
     ]
 
 
-def _prediction(drive, table, materials):
+def _prediction(drive, found):
     """What predicts omega_disr of sizes that were left out."""
-    found = cross_validation(table, materials=materials)
     own = found[(found["type"] == "all") & found["scatter"].notna()]
     if not len(own):
         return ""
