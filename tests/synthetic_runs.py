@@ -9,6 +9,8 @@ from ratd.materials import get_material
 
 CONTACTS = {"BA": lambda n: n - 1, "BAM1": lambda n: 2 * n - 3, "BAM2": lambda n: 3 * n - 6}
 POROSITY = {"BA": 0.75, "BAM1": 0.62, "BAM2": 0.48}
+NO_CHECKS = "no checks"
+"""Name of a folder that is not there, for data without the tables of the validation."""
 
 
 def record_omegas(omega_1, end, records=300):

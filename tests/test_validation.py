@@ -15,6 +15,7 @@ from ratd.drives import angular_velocity, make_drive
 from ratd.growth import grow
 from ratd.markdown import markdown_table, measured, measured_range
 from ratd.materials import MATERIALS
+from ratd.provenance import provenance
 from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 from ratd.statistics import median_of
@@ -31,6 +32,7 @@ from ratd.validation import (
     theory,
     vibrating_pair,
 )
+from ratd.validation import data as kept
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.show import convergence as show_convergence
 from ratd.validation.show import energy as show_energy
@@ -41,10 +43,11 @@ from ratd.validation.show import growth as show_growth
 from ratd.validation.show import literal as show_literal
 from ratd.validation.show import pull_off as show_pull_off
 from ratd.validation.show import theory as show_theory
-from ratd.validation.show.report import report
+from ratd.validation.show.report import SHOWN, report, section
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
 
-CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
+ROOT = Path(__file__).parents[1]
+CONFIG = ROOT / "config" / "validation.yaml"
 SMALL = {"material": "q-S", "type": "BAM2", "a_eff": 60e-9, "seed": 0}
 
 
@@ -469,6 +472,97 @@ def test_median_and_its_error():
     assert together["error"] > 3 * found["error"]
 
 
+@pytest.fixture
+def theory_pieces(tmp_path):
+    """Settings of two pieces, rows of both, and their files, of different source."""
+    shared = SMALL | {"seeds": 1, "epsilon": 0.5, "timestep_factor": 0.1}
+    pieces = {kind: shared | {"type": kind} for kind in ("BA", "BAM2")}
+    paths, rows = [tmp_path / "results" / f"{name}.nc" for name in pieces], []
+    for path, settings, source in zip(paths, pieces.values(), ("b", "a"), strict=True):
+        rows += theory.compute(settings)
+        write_table(path, rows[-1:], theory.KIND, provenance(source, settings))
+    return pieces, rows, paths
+
+
+def test_a_piece_is_kept_as_long_as_it_is_asked_for(tmp_path, theory_pieces):
+    pieces, rows, paths = theory_pieces
+    folder = tmp_path / "data"
+    assert kept.lacking(folder, "theory", pieces) == ["BA", "BAM2"]
+    kept.collect(folder, "theory", paths, pieces)
+    assert kept.is_whole(folder, "theory", pieces)
+    table = kept.check_table(folder, "theory")
+    pd.testing.assert_frame_equal(table, pd.DataFrame(rows)[list(theory.COLUMNS)], check_dtype=False)
+    more, other = pieces | {"BAM1": pieces["BA"]}, pieces | {"BA": pieces["BA"] | {"seed": 1}}
+    assert kept.lacking(folder, "theory", more) == ["BAM1"] and kept.lacking(folder, "theory", other) == ["BA"]
+    fewer = {"BA": pieces["BA"]}
+    assert kept.lacking(folder, "theory", fewer) == []
+    assert not any(kept.is_whole(folder, "theory", asked) for asked in (more, other, fewer))
+    kept.collect(folder, "theory", [], fewer)
+    assert kept.is_whole(folder, "theory", fewer) and kept.check_table(folder, "theory")["type"].tolist() == ["BA"]
+
+
+def test_pieces_collected_one_after_the_other_are_those_collected_at_once(tmp_path, theory_pieces):
+    pieces, _, paths = theory_pieces
+    kept.collect(tmp_path / "whole", "theory", paths, pieces)
+    for path in reversed(paths):
+        kept.collect(tmp_path / "parts", "theory", [path], pieces)
+    whole, parts = (Path(kept.table_path(tmp_path / name, "theory")) for name in ("whole", "parts"))
+    assert parts.read_bytes() == whole.read_bytes()
+    whole.write_bytes(whole.read_bytes()[:-100])
+    assert kept.lacking(tmp_path / "whole", "theory", pieces) == list(pieces)
+
+
+def test_pieces_of_other_settings_are_refused(tmp_path, theory_pieces):
+    pieces, _, paths = theory_pieces
+    with pytest.raises(ratd.FileError, match="BAM2.nc: was made with other settings"):
+        kept.collect(tmp_path / "data", "theory", paths, pieces | {"BAM2": pieces["BA"]})
+    assert not (tmp_path / "data").exists()
+
+
+def test_the_folder_says_what_it_holds_and_holds_nothing_else(tmp_path, theory_pieces):
+    pieces, _, paths = theory_pieces
+    folder = tmp_path / "data"
+    kept.collect(folder, "theory", paths, pieces)
+    for name in ("old.nc", "theory.md", "theory.png"):
+        (folder / name).write_text("not asked for, or there in a better form")
+    kept.finish(folder, {"theory": pieces}, "make it")
+    text = (folder / "README.md").read_text()
+    assert "make it" in text and "| `theory.nc` | 2 of 2 | 2 | a; b |" in text and str(tmp_path) not in text
+    assert {path.name for path in folder.iterdir()} == {"README.md", "theory.nc"}
+
+
+def test_an_older_section_stays_until_its_table_is_whole(tmp_path, theory_pieces):
+    pieces, rows, paths = theory_pieces
+    folder, checks = tmp_path / "data", {"theory": pieces}
+    kept.collect(folder, "theory", paths[:1], pieces)
+    with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
+        report(folder, checks, "pictures", "make it")
+    words, picture = kept.older_section(folder, "theory")
+    words.write_text("## Old\n\nwords\n")
+    picture.write_bytes(b"")
+    kept.finish(folder, checks, "make it")
+    readme = (folder / "README.md").read_text()
+    assert "| `theory.nc` | 1 of 2 | 1 | b |" in readme and "| `theory.md` | – | – | – |" in readme
+    text = report(folder, checks, "pictures", "make it")
+    assert "make it" in text and text.endswith("## Old\n\nwords\n\n![theory](pictures/theory.png)\n")
+    assert "under Old: an older run" in text
+    kept.collect(folder, "theory", paths[1:], pieces)
+    kept.finish(folder, checks, "make it")
+    text = report(folder, checks, "pictures", "make it")
+    assert text.endswith(section("theory", show_theory.tell(pd.DataFrame(rows)), "pictures/theory.png"))
+    assert "older run" not in text and not words.exists() and not picture.exists()
+
+
+def test_the_committed_document_says_what_its_tables_give(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    text = report(kept.FOLDER, Plan(CONFIG).pieces["full"], "validation", "snakemake --cores 2 validation_report")
+    assert text == (ROOT / "docs" / "validation.md").read_text()
+
+
+def test_every_check_is_shown():
+    assert set(SHOWN) == set(Plan(CONFIG).pieces["full"])
+
+
 def test_numbers_in_words():
     assert measured(1.01349, 0.0241) == "1.013 ± 0.024"
     assert measured(123.4, 20.0) == "123 ± 20"
@@ -476,8 +570,6 @@ def test_numbers_in_words():
     assert measured(0.5, np.nan) == "0.5" and measured(np.nan, 1.0) == "–"
     assert measured(0.35, 5e-17) == "0.35"  # the rounding of equal values
     assert markdown_table(["a", "b"], [[1, 2]]).splitlines() == ["| a | b |", "| --- | --- |", "| 1 | 2 |"]
-    text = report(["## A\n"], extent="quick", results="results/validation", command="make it")
-    assert "make it" in text and "## A" in text and "results/validation/quick" in text
 
 
 def test_plan_names_every_piece_once():

@@ -18,7 +18,7 @@ from ratd.reproduction.text import all_of, lies_in, near
 from ratd.schema import END_REASONS
 from ratd.validation.convergence import MARKS
 from ratd.validation.show.convergence import large_shifts, rate_exponent
-from synthetic_runs import make_run, make_table
+from synthetic_runs import NO_CHECKS, make_run, make_table
 
 ROOT = Path(__file__).parents[1]
 SIZES = (200e-9, 300e-9, 350e-9, 500e-9)
@@ -37,7 +37,7 @@ def folder(tmp_path_factory):
 @pytest.fixture
 def data(folder, monkeypatch):
     monkeypatch.chdir(ROOT)
-    return Data(str(folder))
+    return Data(str(folder), checks=NO_CHECKS)
 
 
 def ensemble(seeds=6):

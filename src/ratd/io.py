@@ -296,6 +296,22 @@ def read_made_with(path, kind, attributes):
     return found if all(found.attrs.get(name) == value for name, value in attributes.items()) else None
 
 
+def join_tables(parts):
+    """Tables one below the other.
+
+    Parameters
+    ----------
+    parts : list of xarray.Dataset
+        Of one kind and one dimension.
+
+    Returns
+    -------
+    xarray.Dataset
+        Without attributes of the whole.
+    """
+    return xr.concat(parts, dim=next(iter(parts[0].sizes)), data_vars="all").drop_attrs()
+
+
 def block(rows, kind, material, attributes=None):
     """Join the rows of some grains of one material.
 

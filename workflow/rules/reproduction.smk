@@ -3,7 +3,7 @@
 #
 # `redraw` knows the data as files without a rule behind them, so that it never starts a simulation.
 from ratd.provenance import file_hash
-from ratd.reproduction.data import FIRM_BOUNDS, FROM_RESULTS, STUDIES, Data
+from ratd.reproduction.data import FIRM_BOUNDS, FROM_RESULTS, Data
 
 DATA = Data()
 DOCS = str(Path(FOLDER).parent)
@@ -51,7 +51,7 @@ rule reproduction_data:
         runtime=60,
     params:
         code=CODE["reproduction_data"],
-        # what there is of studies and validation, which are not computed for this, with the hash of each file
+        # what there is of studies, which are not computed for this, with the hash of each file
         settings=lambda w: {
             "config": PLAN.config,
             "studies": {
@@ -60,10 +60,6 @@ rule reproduction_data:
                 for below, name in FROM_RESULTS.items()
                 for path in [f"{PLAN.results}/{below.format(drive=drive)}"]
                 if Path(path).is_file()
-            },
-            "validation": {
-                check: {path: file_hash(path) for path in paths}
-                for check, paths in CHECKS.existing(CHECKS.docs, STUDIES).items()
             },
             "command": "snakemake --cores 2 reproduction_data --configfile CONFIG",
         },

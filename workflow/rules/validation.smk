@@ -1,5 +1,8 @@
 # Validation: checks of the model, one job an independent piece, one figure and one section of text a check.
+from ratd.validation.data import FOLDER as CHECKED, lacking, present
 from ratd.validation.plan import EXTENTS
+
+ASKED = CHECKS.pieces[CHECKS.docs]
 
 for check in CHECKS.pieces["full"]:
 
@@ -77,20 +80,46 @@ rule validation_quick:
         ),
 
 
-# docs/validation.md and its figures, of the extent that config/validation.yaml names.
+# The tables of docs/validation.md, of the extent that config/validation.yaml names. Only what they lack is computed.
+#
+# They are no output: with a rule behind them, writing the document would compute them. A rule without any is run each
+# time, which it has to be: whether something is lacking, the tables themselves say.
+rule validation_data:
+    input:
+        unpack(
+            lambda w: {
+                check: CHECKS.files(CHECKS.docs, check, names)
+                for check, pieces in ASKED.items()
+                if (names := lacking(CHECKED, check, pieces))
+            }
+        ),
+    log:
+        f"{CHECKS.results}/logs/data.log",
+    conda:
+        "../envs/ratd.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=CODE["validation_data"],
+        settings={
+            "folder": CHECKED,
+            "checks": ASKED,
+            "command": "snakemake --cores 2 validation_data",
+        },
+    message:
+        "Collect the data of docs/validation.md"
+    script:
+        "../scripts/validation_data.py"
+
+
 rule validation_report:
     input:
-        sections=expand(
-            f"{CHECKS.results}/{CHECKS.docs}/{{check}}.md",
-            check=CHECKS.pieces[CHECKS.docs],
-        ),
-        figures=expand(
-            f"{CHECKS.results}/{CHECKS.docs}/{{check}}.png",
-            check=CHECKS.pieces[CHECKS.docs],
-        ),
+        present(CHECKED, ASKED),
     output:
         text="docs/validation.md",
-        figures=expand("docs/{check}.png", check=CHECKS.pieces[CHECKS.docs]),
+        figures=expand("docs/validation/{check}.png", check=ASKED),
     log:
         f"{CHECKS.results}/logs/report.log",
     benchmark:
@@ -99,13 +128,13 @@ rule validation_report:
         "../envs/ratd.yaml"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=1500,
         runtime=10,
     params:
         code=CODE["validation_report"],
         settings={
-            "extent": CHECKS.docs,
-            "results": CHECKS.results,
+            "folder": CHECKED,
+            "checks": ASKED,
             "command": "snakemake --cores 2 validation_report",
         },
     message:

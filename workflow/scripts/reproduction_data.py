@@ -6,7 +6,6 @@ from ratd.config import check
 from ratd.jobs import Job
 from ratd.reproduction.collect import Collection
 from ratd.reproduction.data import FIRM_BOUNDS
-from ratd.validation import convergence, lammps, literal
 
 with Job(snakemake) as job:
     files, settings = snakemake.input, job.settings
@@ -25,10 +24,5 @@ with Job(snakemake) as job:
         collection.copy(path, name, "a study of the reproduction")
     if files.firm_bounds:
         collection.tables(files.firm_bounds, "firm_bounds", FIRM_BOUNDS, "firm bounds of all grains as grown")
-    for check_of in (lammps, literal, convergence):
-        name = check_of.KIND.removeprefix("validation_")
-        if settings["validation"].get(name):
-            what = f"cases of the check {name} of docs/validation.md"
-            collection.tables(settings["validation"][name], check_of.KIND, f"validation/{name}.nc", what)
     collection.finish(settings["command"])
     job.log.info(f"{len(collection.written)} files in {collection.folder}")

@@ -1,15 +1,22 @@
-"""Join the sections of all checks, and put their figures beside the text."""
+"""Write docs/validation.md and draw its figures."""
 
 import shutil
 from pathlib import Path
 
 from ratd import io
+from ratd.figures.style import save
 from ratd.jobs import Job
-from ratd.validation.show.report import report
+from ratd.validation.data import check_table, is_whole, older_section
+from ratd.validation.show.report import SHOWN, report
 
 with Job(snakemake) as job:
-    sections = [Path(path).read_text(encoding="utf-8") for path in snakemake.input.sections]
-    for source, target in zip(snakemake.input.figures, snakemake.output.figures, strict=True):
-        with io.atomic(target) as temporary:
-            shutil.copyfile(source, temporary)
-    io.write_text(snakemake.output.text, report(sections, **job.settings))
+    output, settings = snakemake.output, job.settings
+    folder, checks = settings["folder"], settings["checks"]
+    text = report(folder, checks, Path(output.figures[0]).parent.name, settings["command"])
+    for check, picture in zip(checks, output.figures, strict=True):
+        if is_whole(folder, check, checks[check]):
+            save(SHOWN[check].draw(check_table(folder, check)), picture)
+        else:
+            with io.atomic(picture) as temporary:
+                shutil.copyfile(older_section(folder, check)[1], temporary)
+    io.write_text(output.text, text)

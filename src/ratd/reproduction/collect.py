@@ -5,7 +5,6 @@ import shutil
 from pathlib import Path
 
 import pandas as pd
-import xarray as xr
 import yaml
 
 from ratd import io
@@ -153,20 +152,18 @@ class Collection:
 
     def tables(self, paths, kind, name, what):
         """Several files of tables of one kind as one file."""
-        parts = [io.read(path, kind) for path in paths]
-        joined = xr.concat(parts, dim=next(iter(parts[0].sizes)), data_vars="all").drop_attrs()
-        self._write(name, what, joined, kind)
+        self._write(name, what, io.join_tables([io.read(path, kind) for path in paths]), kind)
 
     def finish(self, command):
         """Remove data of an earlier collection, and write the index and the README of the folder.
 
-        Studies and checks of the validation stay: they may come from other results than the ensemble.
+        Studies stay: they may come from other results than the ensemble.
         """
         for path in sorted(self.folder.rglob("*.nc")):
             name = str(path.relative_to(self.folder))
             if name in self.written:
                 continue
-            if path.parent == self.folder or path.parent.name == "validation":
+            if path.parent == self.folder:
                 self.written[name] = KEPT + REFITTED.get(name, "")
             else:
                 path.unlink()
@@ -197,7 +194,7 @@ Collected by
 from the results of the pipeline with the config that stands in `config.yaml` (hash {config}). Source of the collection:
 {code}. {versions}. Each netCDF file names in its attributes the settings, the hash of the source and of the inputs that
 it was made with; files of the pipeline are copied as they are. `snakemake --cores 2 redraw` draws all figures and
-writes docs/reproduction.md from these files alone.
+writes docs/reproduction.md from these files and those of docs/validation/data alone.
 
 The ensemble was computed in pieces. The same command spins up only what the config wants and `{index}` does not name,
 and adds it to what is here; grains that another config or another law would make are dropped. Grains that were spun up

@@ -16,6 +16,8 @@ from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
 from ratd.ensemble import size_key
 from ratd.fragmentation import fragment_table
+from ratd.validation.data import FOLDER as CHECKED
+from ratd.validation.data import check_table, table_path
 
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
@@ -58,9 +60,12 @@ class Data:
     ----------
     folder : str
         Such as `FOLDER`.
+    checks : str
+        Folder of the tables of the validation, see `ratd.validation.data`.
     """
 
     folder: str = FOLDER
+    checks: str = CHECKED
 
     def path(self, name):
         """Path of a file, str."""
@@ -72,8 +77,9 @@ class Data:
 
     @property
     def files(self):
-        """All data, sorted list of str; none where there is no config, without which they cannot be read."""
+        """All data, list of str; none where there is no config, without which they cannot be read."""
         files = [str(path) for path in sorted(Path(self.folder).rglob("*.nc"))]
+        files += [table_path(self.checks, name) for name in STUDIES if self.has_study(name)]
         return [*files, self.path(CONFIG)] if self.has(CONFIG) else []
 
     @cached_property
@@ -132,7 +138,7 @@ class Data:
         if not self.drives:
             return names
         names += [name for name in ("calibration", "formulae") if self.has(f"{name}.nc")]
-        return names + [name for name in DRAWN_STUDIES if self.has(f"validation/{name}.nc")]
+        return names + [name for name in DRAWN_STUDIES if self.has_study(name)]
 
     def _each_drive(self, name, read):
         return {drive: read(self.path(name.format(drive=drive))) for drive in self.drives
@@ -220,12 +226,10 @@ class Data:
         """Grains spun up with single formulae as printed, a table, or None."""
         return io.read(self.path(FORMULAE), "formulae").to_dataframe() if self.has(FORMULAE) else None
 
+    def has_study(self, name):
+        """Whether the table of a check of the validation is there."""
+        return Path(table_path(self.checks, name)).is_file()
+
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""
-        # not at the head: the Snakefile needs this module to be read in no time
-        from ratd.validation import convergence, lammps, literal
-        from ratd.validation.tables import read_tables
-
-        kind = {"lammps": lammps.KIND, "literal": literal.KIND, "convergence": convergence.KIND}[name]
-        path = f"validation/{name}.nc"
-        return read_tables([self.path(path)], kind) if self.has(path) else None
+        return check_table(self.checks, name) if self.has_study(name) else None

@@ -26,11 +26,11 @@ Numbers and figures were written by
 
     snakemake --cores 2 redraw
 
-from the files in `docs/reproduction/data`, where a README says how these were made; no number but the printed ones and
-the rules of “holds if” was typed by hand. "±" is a standard error; that of a median over several cells takes in how
-much the cells differ, though none of them is missing, and is an upper limit for that. A range in brackets behind
-a value is that from the 16th to the 84th percentile of the grains, called the middle two thirds, and a {confidence:g} %
-interval where the text says so. Angular velocities are in rad/s.
+from the files in `docs/reproduction/data` and, for the checks of the model, in `docs/validation/data`, where READMEs
+say how these were made; no number but the printed ones and the rules of “holds if” was typed by hand. "±" is a standard
+error; that of a median over several cells takes in how much the cells differ, though none of them is missing, and is an
+upper limit for that. A range in brackets behind a value is that from the 16th to the 84th percentile of the grains,
+called the middle two thirds, and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 

@@ -1,7 +1,6 @@
 """Which independent pieces each check is computed in: one job a piece."""
 
 from itertools import product
-from pathlib import Path
 
 from ratd.config import read_yaml
 from ratd.errors import InputError
@@ -49,8 +48,8 @@ class Plan:
         if self.docs not in EXTENTS:
             raise InputError(f"{path}: docs is {self.docs!r}; allowed: {', '.join(EXTENTS)}")
 
-    def files(self, extent, check):
-        """Files of all pieces of a check.
+    def files(self, extent, check, names=None):
+        """Files of pieces of a check, of all of them if no names are given.
 
         Raises
         ------
@@ -59,15 +58,8 @@ class Plan:
         """
         if check == "lammps":
             peer_lammps.load()
-        return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
-
-    def existing(self, extent, checks):
-        """Those files of some checks that have been computed, dict of lists."""
-        found = {
-            check: [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent].get(check, ())]
-            for check in checks
-        }
-        return {check: [path for path in paths if Path(path).is_file()] for check, paths in found.items()}
+        names = self.pieces[extent][check] if names is None else names
+        return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in names]
 
     def _pieces(self, check, own):
         return {

@@ -1,5 +1,24 @@
 """The report: introduction, then the sections of the checks."""
 
+from ratd.errors import InputError
+from ratd.validation.data import check_table, is_whole, older_section
+from ratd.validation.show import (
+    convergence,
+    energy,
+    energy_step,
+    forces,
+    frames,
+    growth,
+    lammps,
+    literal,
+    pull_off,
+    theory,
+)
+
+MODULES = (convergence, energy, energy_step, forces, frames, growth, lammps, literal, pull_off, theory)
+SHOWN = {module.__name__.rpartition(".")[2]: module for module in MODULES}
+"""Check -> module with its `draw` and `tell`."""
+
 INTRODUCTION = """# Validation
 
 Checks of the model against exact answers, theory and its own convergence. Everything below, numbers and figures, was
@@ -7,9 +26,9 @@ written by
 
     {command}
 
-Nothing in it is typed by hand. Tables of all cases, from which the figures are drawn, lie in `{results}/{extent}` as
-netCDF. "±" is a standard error; where only a range is given, it is the range over all cases.
-
+from the tables of all cases in `{data}`, where a README says how these were made. Nothing in it is typed by hand. "±"
+is a standard error; where only a range is given, it is the range over all cases.
+{older}
 BA, BAM1, BAM2: grains grown with none, one and two migrations of each monomer. a-C, q-S, co-S: amorphous carbon, quartz
 silicate, a mixture of silicates. omega: angular velocity in rad/s. Its marks: omega_disr, where the total stress of the
 largest fragment peaks before less than half of the mass is left; omega_first_loss, the first loss of mass;
@@ -19,20 +38,66 @@ bound: the omega at which the weakest cut through the contacts gives way, each h
 `docs/model.md` says more.
 """
 
+OLDER = """
+The exception is what is said under {headings}: an older run of the same code wrote it, whose tables were not kept, and
+sentences that were changed since were changed there by hand as the code has them.
+"""
 
-def report(sections, *, extent, results, command):
-    """The text of the whole report, Markdown.
+
+def section(check, words, picture):
+    """The section of a check with its figure, Markdown.
 
     Parameters
     ----------
-    sections : list of str
-        What `tell` of the checks returned, with their figures.
-    extent, results, command : str
-        Which extent it is, where its results lie, and what makes it.
+    check : str
+    words : str
+        From its `tell`.
+    picture : str
+        The figure as seen from the text.
 
     Returns
     -------
     str
     """
-    head = INTRODUCTION.format(extent=extent, results=results, command=command)
-    return "\n".join([head, *sections])
+    return f"{words}\n\n![{check}]({picture})\n"
+
+
+def report(folder, checks, pictures, command):
+    """The text of docs/validation.md, Markdown.
+
+    Parameters
+    ----------
+    folder : path-like
+        Of the tables, see `ratd.validation.data`.
+    checks : dict
+        Check -> name of a piece -> its settings, as in `ratd.validation.plan.Plan.pieces`.
+    pictures : str
+        Folder of the figures, as seen from the document.
+    command : str
+        What writes it.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        If a check has neither a table with all pieces that are asked for, and no other, nor an older section.
+    """
+    sections, older = [], []
+    for check, pieces in checks.items():
+        path, _ = older_section(folder, check)
+        if is_whole(folder, check, pieces):
+            words = SHOWN[check].tell(check_table(folder, check))
+        elif path.is_file():
+            words = path.read_text(encoding="utf-8").rstrip()
+            older.append(words.splitlines()[0].removeprefix("## "))
+        else:
+            raise InputError(
+                f"{folder}: lacks the table of {check} as config/validation.yaml asks for it; allowed: tables of this "
+                "config (snakemake --cores 2 validation_data makes them)"
+            )
+        sections.append(section(check, words, f"{pictures}/{check}.png"))
+    kept = OLDER.format(headings=", ".join(older)) if older else ""
+    return "\n".join([INTRODUCTION.format(data=folder, command=command, older=kept), *sections])
