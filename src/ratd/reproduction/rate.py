@@ -42,7 +42,7 @@ def calibration_section(data):
             f"{_rates(runs, found['calibrated'].item())}Besides the "
             "radii of the monomers, which give the numbers of Fig. 1, nothing else was fitted to the paper."
         )
-        parts += _steps(step_ratios(runs))
+        parts += _steps(step_ratios(runs), value["exponent"])
     parts += [*_drag_time(data), *_shorter_step(data), *solid_parts(data)]
     if "literal" in data.tables:
         law = data.plan.spin_up_of("literal")
@@ -72,20 +72,27 @@ def calibration_section(data):
     return "\n\n".join(parts)
 
 
-def _steps(pairs):
-    """A paragraph: how well runs with one step stand for those with another."""
+def _steps(pairs, exponent):
+    """A paragraph: how well runs with one step stand for those with another, and what the difference means."""
     if not len(pairs):
         return []
-    found = []
+    found, meaning = [], ""
     for (longer, shorter), part in pairs.groupby(["timestep_factor", "shorter_factor"]):
         own = median_of(part["ratio"], part["seed"])
         ratio = with_error(own["median"], own["error"]) if np.isfinite(own["error"]) else f"{own['median']:.4f}"
         scatter = f"; {part['ratio'].min():.4f} to {part['ratio'].max():.4f}" if len(part) > 1 else ""
         found.append(f"{ratio} (f = {longer:g} over f = {shorter:g}, {plural(len(part), 'pair')}{scatter})")
+        if np.isclose(shorter, PRINTED_STEP):  # the last is with the longest step
+            off = 100 * (own["median"] ** (1 / exponent) - 1)
+            meaning = (
+                f" By the exponent of the fit, runs with f = {longer:g} ask for a d omega/dt that is {abs(off):.2g} % "
+                f"too {'low' if off > 0 else 'high'} beside those at the printed step itself."
+            )
     return [
         f"It is the rate at the printed step, f = {PRINTED_STEP:g}. Only d omega/dt over the step counts, so runs with "
         "a longer step and a d omega/dt that is as much greater, which are far cheaper, stand for it. The onset with "
         f"the longer step over that with the shorter one in pairs of runs of the same grain: {', '.join(found)}."
+        + meaning
     ]
 
 
