@@ -66,7 +66,7 @@ def test_of_the_validation_only_what_its_data_lack_is_computed(tmp_path):
     data = tmp_path / "docs" / "validation" / "data"
     shutil.copytree(ROOT / "docs" / "validation" / "data", data)
     before = pipeline.planned("validation_data")
-    assert before["validation_data"] == 1 and "validation_energy" not in before
+    assert before["validation_data"] == 1 and set(before) <= {"validation_data", "validation_convergence"}
     (data / "energy.nc").unlink()
     assert pipeline.planned("validation_data") == before | {"validation_energy": 9}
     done = pipeline.run("validation_report")

@@ -487,18 +487,25 @@ def theory_pieces(tmp_path):
 def test_a_piece_is_kept_as_long_as_it_is_asked_for(tmp_path, theory_pieces):
     pieces, rows, paths = theory_pieces
     folder = tmp_path / "data"
-    assert kept.lacking(folder, "theory", pieces) == ["BA", "BAM2"]
+    assert kept.lacking(kept.read_pieces(folder, "theory"), pieces) == ["BA", "BAM2"]
     kept.collect(folder, "theory", paths, pieces)
-    assert kept.is_whole(folder, "theory", pieces)
+    assert kept.is_whole(kept.read_pieces(folder, "theory"), pieces)
     table = kept.check_table(folder, "theory")
     pd.testing.assert_frame_equal(table, pd.DataFrame(rows)[list(theory.COLUMNS)], check_dtype=False)
     more, other = pieces | {"BAM1": pieces["BA"]}, pieces | {"BA": pieces["BA"] | {"seed": 1}}
-    assert kept.lacking(folder, "theory", more) == ["BAM1"] and kept.lacking(folder, "theory", other) == ["BA"]
+    assert kept.lacking(kept.read_pieces(folder, "theory"), more) == ["BAM1"] and kept.lacking(
+        kept.read_pieces(folder, "theory"), other
+    ) == ["BA"]
     fewer = {"BA": pieces["BA"]}
-    assert kept.lacking(folder, "theory", fewer) == []
-    assert not any(kept.is_whole(folder, "theory", asked) for asked in (more, other, fewer))
+    assert kept.lacking(kept.read_pieces(folder, "theory"), fewer) == []
+    assert not any(kept.is_whole(kept.read_pieces(folder, "theory"), asked) for asked in (more, other, fewer))
+    kept.collect(folder, "theory", [], other)
+    assert kept.check_table(folder, "theory")["type"].tolist() == ["BAM2"]
+    kept.collect(folder, "theory", paths, pieces)
     kept.collect(folder, "theory", [], fewer)
-    assert kept.is_whole(folder, "theory", fewer) and kept.check_table(folder, "theory")["type"].tolist() == ["BA"]
+    assert kept.is_whole(kept.read_pieces(folder, "theory"), fewer) and kept.check_table(folder, "theory")[
+        "type"
+    ].tolist() == ["BA"]
 
 
 def test_pieces_collected_one_after_the_other_are_those_collected_at_once(tmp_path, theory_pieces):
@@ -509,7 +516,7 @@ def test_pieces_collected_one_after_the_other_are_those_collected_at_once(tmp_pa
     whole, parts = (Path(kept.table_path(tmp_path / name, "theory")) for name in ("whole", "parts"))
     assert parts.read_bytes() == whole.read_bytes()
     whole.write_bytes(whole.read_bytes()[:-100])
-    assert kept.lacking(tmp_path / "whole", "theory", pieces) == list(pieces)
+    assert kept.lacking(kept.read_pieces(tmp_path / "whole", "theory"), pieces) == list(pieces)
 
 
 def test_pieces_of_other_settings_are_refused(tmp_path, theory_pieces):
@@ -539,6 +546,8 @@ def test_an_older_section_stays_until_its_table_is_whole(tmp_path, theory_pieces
         report(folder, checks, "pictures", "make it")
     words, picture = kept.older_section(folder, "theory")
     words.write_text("## Old\n\nwords\n")
+    with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
+        report(folder, checks, "pictures", "make it")
     picture.write_bytes(b"")
     kept.finish(folder, checks, "make it")
     readme = (folder / "README.md").read_text()

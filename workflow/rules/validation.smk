@@ -1,5 +1,5 @@
 # Validation: checks of the model, one job an independent piece, one figure and one section of text a check.
-from ratd.validation.data import FOLDER as CHECKED, lacking, present
+from ratd.validation.data import FOLDER as CHECKED, lacking, present, read_pieces
 from ratd.validation.plan import EXTENTS
 
 ASKED = CHECKS.pieces[CHECKS.docs]
@@ -90,7 +90,7 @@ rule validation_data:
             lambda w: {
                 check: CHECKS.files(CHECKS.docs, check, names)
                 for check, pieces in ASKED.items()
-                if (names := lacking(CHECKED, check, pieces))
+                if (names := lacking(read_pieces(CHECKED, check), pieces))
             }
         ),
     log:

@@ -6,7 +6,7 @@ from pathlib import Path
 from ratd import io
 from ratd.figures.style import save
 from ratd.jobs import Job
-from ratd.validation.data import check_table, is_whole, older_section
+from ratd.validation.data import check_table, is_whole, older_section, read_pieces
 from ratd.validation.show.report import SHOWN, report
 
 with Job(snakemake) as job:
@@ -14,7 +14,7 @@ with Job(snakemake) as job:
     folder, checks = settings["folder"], settings["checks"]
     text = report(folder, checks, Path(output.figures[0]).parent.name, settings["command"])
     for check, picture in zip(checks, output.figures, strict=True):
-        if is_whole(folder, check, checks[check]):
+        if is_whole(read_pieces(folder, check), checks[check]):
             save(SHOWN[check].draw(check_table(folder, check)), picture)
         else:
             with io.atomic(picture) as temporary:

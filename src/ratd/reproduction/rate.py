@@ -82,8 +82,8 @@ def _steps(pairs, exponent):
         ratio = with_error(own["median"], own["error"]) if np.isfinite(own["error"]) else f"{own['median']:.4f}"
         scatter = f"; {part['ratio'].min():.4f} to {part['ratio'].max():.4f}" if len(part) > 1 else ""
         found.append(f"{ratio} (f = {longer:g} over f = {shorter:g}, {plural(len(part), 'pair')}{scatter})")
-        if np.isclose(shorter, PRINTED_STEP):  # the last is with the longest step
-            off = 100 * (own["median"] ** (1 / exponent) - 1)
+        if np.isclose(shorter, PRINTED_STEP) and np.isfinite(exponent):  # the last is with the longest step
+            off = 100 * (1 - own["median"] ** (-1 / exponent))
             meaning = (
                 f" By the exponent of the fit, runs with f = {longer:g} ask for a d omega/dt that is {abs(off):.2g} % "
                 f"too {'low' if off > 0 else 'high'} beside those at the printed step itself."

@@ -33,7 +33,13 @@ def table_path(folder, check):
 
 
 def older_section(folder, check):
-    """Section of a check of which the table is not whole, as it was written once, and its figure; paths."""
+    """Section of a check of which the table is not whole, as it was written once, and its figure.
+
+    Returns
+    -------
+    words, picture : pathlib.Path
+        Both are there, or they count as neither.
+    """
     return Path(folder, f"{check}.md"), Path(folder, f"{check}.png")
 
 
@@ -66,19 +72,19 @@ def read_pieces(folder, check):
     except FileError:
         return {}
     found, first = {}, 0
-    for name, cases, kept in json.loads(table.attrs["pieces"]):
+    for name, cases, kept in json.loads(table.attrs.get("pieces", "[]")):
         found[name] = table.isel({CASE: slice(first, first + cases)}).drop_attrs().assign_attrs(kept)
         first += cases
     return found
 
 
-def lacking(folder, check, pieces):
+def lacking(there, pieces):
     """Names of the pieces that a table lacks, or has with other settings.
 
     Parameters
     ----------
-    folder : path-like
-    check : str
+    there : dict
+        From `read_pieces`.
     pieces : dict
         Name of a piece -> its settings, as in `ratd.validation.plan.Plan.pieces`.
 
@@ -86,13 +92,16 @@ def lacking(folder, check, pieces):
     -------
     list of str
     """
-    there = {name: piece.attrs["settings_hash"] for name, piece in read_pieces(folder, check).items()}
-    return [name for name, settings in pieces.items() if there.get(name) != settings_hash(settings)]
+    return [
+        name
+        for name, settings in pieces.items()
+        if name not in there or there[name].attrs["settings_hash"] != settings_hash(settings)
+    ]
 
 
-def is_whole(folder, check, pieces):
+def is_whole(there, pieces):
     """Whether a table has all pieces and no other. Parameters as of `lacking`."""
-    return list(read_pieces(folder, check)) == list(pieces) and not lacking(folder, check, pieces)
+    return list(there) == list(pieces) and not lacking(there, pieces)
 
 
 def collect(folder, check, paths, pieces):
@@ -114,7 +123,7 @@ def collect(folder, check, paths, pieces):
     """
     kind = kind_of(check)
     there = read_pieces(folder, check)
-    there = {name: there[name] for name in there.keys() & pieces.keys() - set(lacking(folder, check, pieces))}
+    there = {name: there[name] for name in pieces.keys() - set(lacking(there, pieces))}
     for path in map(Path, paths):
         there[path.stem] = io.read(path, kind)
         if there[path.stem].attrs["settings_hash"] != settings_hash(pieces[path.stem]):
@@ -132,7 +141,7 @@ def collect(folder, check, paths, pieces):
 
 
 def finish(folder, checks, command):
-    """Remove what is not asked for, or is there in a better form, and say what the folder holds.
+    """Remove tables that are not asked for and older sections of whole ones, and say what the folder holds.
 
     Parameters
     ----------
@@ -146,10 +155,11 @@ def finish(folder, checks, command):
         path.unlink()
     rows = []
     for check, pieces in checks.items():
-        if is_whole(folder, check, pieces):
+        there = read_pieces(folder, check)
+        if is_whole(there, pieces):
             for path in older_section(folder, check):
                 path.unlink(missing_ok=True)
-        held = read_pieces(folder, check).values()
+        held = there.values()
         cases, source = sum(piece.sizes[CASE] for piece in held), sorted({piece.attrs["code_hash"] for piece in held})
         of_table = [f"{len(held)} of {len(pieces)}", cases, "; ".join(source)]
         for path in map(Path, present(folder, [check])):
@@ -169,8 +179,8 @@ from what `config/validation.yaml` asks for. `snakemake --cores 2 validation_rep
 document from these files alone. A piece of a check stays while the config asks for it with the same settings, also when
 the source has changed since; to have a check computed anew, remove its table and run the command again. Each table
 names in its attribute `pieces` its pieces one after the other: how many cases, the hash of the settings and of the
-source, and the versions that it was made with. A section and a figure here are of a check that lacks pieces; they stay
-in the document until it has them:
+source, and the versions that it was made with. Of a check that lacks pieces there may be a section and a figure of an
+older run; they stay in the document until it has them:
 
 {table}
 """

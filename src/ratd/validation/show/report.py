@@ -1,7 +1,7 @@
 """The report: introduction, then the sections of the checks."""
 
 from ratd.errors import InputError
-from ratd.validation.data import check_table, is_whole, older_section
+from ratd.validation.data import check_table, is_whole, older_section, read_pieces
 from ratd.validation.show import (
     convergence,
     energy,
@@ -39,7 +39,7 @@ bound: the omega at which the weakest cut through the contacts gives way, each h
 """
 
 OLDER = """
-The exception is what is said under {headings}: an older run of the same code wrote it, whose tables were not kept, and
+The exception is what is said under {headings}: an older run wrote it, whose tables were not all kept, and
 sentences that were changed since were changed there by hand as the code has them.
 """
 
@@ -87,11 +87,11 @@ def report(folder, checks, pictures, command):
     """
     sections, older = [], []
     for check, pieces in checks.items():
-        path, _ = older_section(folder, check)
-        if is_whole(folder, check, pieces):
+        kept = older_section(folder, check)
+        if is_whole(read_pieces(folder, check), pieces):
             words = SHOWN[check].tell(check_table(folder, check))
-        elif path.is_file():
-            words = path.read_text(encoding="utf-8").rstrip()
+        elif all(path.is_file() for path in kept):
+            words = kept[0].read_text(encoding="utf-8").rstrip()
             older.append(words.splitlines()[0].removeprefix("## "))
         else:
             raise InputError(
@@ -99,5 +99,5 @@ def report(folder, checks, pictures, command):
                 "config (snakemake --cores 2 validation_data makes them)"
             )
         sections.append(section(check, words, f"{pictures}/{check}.png"))
-    kept = OLDER.format(headings=", ".join(older)) if older else ""
-    return "\n".join([INTRODUCTION.format(data=folder, command=command, older=kept), *sections])
+    exception = OLDER.format(headings=", ".join(older)) if older else ""
+    return "\n".join([INTRODUCTION.format(data=folder, command=command, older=exception), *sections])
