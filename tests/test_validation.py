@@ -543,28 +543,29 @@ def test_an_older_section_stays_until_its_table_is_whole(tmp_path, theory_pieces
     folder, checks = tmp_path / "data", {"theory": pieces}
     kept.collect(folder, "theory", paths[:1], pieces)
     with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
-        report(folder, checks, "pictures", "make it")
+        report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
     words, picture = kept.older_section(folder, "theory")
     words.write_text("## Old\n\nwords\n")
     with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
-        report(folder, checks, "pictures", "make it")
+        report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
     picture.write_bytes(b"")
     kept.finish(folder, checks, "make it")
     readme = (folder / "README.md").read_text()
     assert "| `theory.nc` | 1 of 2 | 1 | b |" in readme and "| `theory.md` | – | – | – |" in readme
-    text = report(folder, checks, "pictures", "make it")
+    text = report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
     assert "make it" in text and text.endswith("## Old\n\nwords\n\n![theory](pictures/theory.png)\n")
     assert "under Old: an older run" in text
     kept.collect(folder, "theory", paths[1:], pieces)
     kept.finish(folder, checks, "make it")
-    text = report(folder, checks, "pictures", "make it")
+    text = report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
     assert text.endswith(section("theory", show_theory.tell(pd.DataFrame(rows)), "pictures/theory.png"))
     assert "older run" not in text and not words.exists() and not picture.exists()
 
 
 def test_the_committed_document_says_what_its_tables_give(monkeypatch):
     monkeypatch.chdir(ROOT)
-    text = report(kept.FOLDER, Plan(CONFIG).pieces["full"], "validation", "snakemake --cores 2 validation_report")
+    tables = kept.whole_tables(kept.FOLDER, Plan(CONFIG).pieces["full"])
+    text = report(kept.FOLDER, tables, "validation", "snakemake --cores 2 validation_report")
     assert text == (ROOT / "docs" / "validation.md").read_text()
 
 

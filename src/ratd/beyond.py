@@ -60,7 +60,7 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
         If `by` is none of the two.
     """
     if by not in LEFT_OUT:
-        raise InputError(f"cross_validation: by is {by!r}, allowed are 'size' and 'fold'")
+        raise InputError(f"cross_validation: by is {by!r}, allowed are {' and '.join(map(repr, LEFT_OUT))}")
     needed = [mark, "cut_bound", "n_contacts", "filling_factor", "a_eff"]
     table = table[(table[needed].astype(float) > 0).all(axis=1)].reset_index(drop=True)
     rng = np.random.Generator(np.random.PCG64(seed))
@@ -354,8 +354,8 @@ def _fit_power_law(counts, n):
     while abs(step) > 1e-12 and high - low > 1e-12:
         law = np.exp(-exponent * log_n)
         law /= law.sum()
-        excess = law @ log_n - wanted
-        low, high = (exponent, high) if excess > 0.0 else (low, exponent)
-        step = excess / (law @ (log_n - law @ log_n) ** 2)
+        mean = law @ log_n
+        low, high = (exponent, high) if mean > wanted else (low, exponent)
+        step = (mean - wanted) / (law @ (log_n - mean) ** 2)
         exponent = exponent + step if low < exponent + step < high else 0.5 * (low + high)
     return exponent, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), law

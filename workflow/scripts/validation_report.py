@@ -6,16 +6,16 @@ from pathlib import Path
 from ratd import io
 from ratd.figures.style import save
 from ratd.jobs import Job
-from ratd.validation.data import check_table, is_whole, older_section, read_pieces
+from ratd.validation.data import older_section, whole_tables
 from ratd.validation.show.report import SHOWN, report
 
 with Job(snakemake) as job:
     output, settings = snakemake.output, job.settings
-    folder, checks = settings["folder"], settings["checks"]
-    text = report(folder, checks, Path(output.figures[0]).parent.name, settings["command"])
-    for check, picture in zip(checks, output.figures, strict=True):
-        if is_whole(read_pieces(folder, check), checks[check]):
-            save(SHOWN[check].draw(check_table(folder, check)), picture)
+    folder, tables = settings["folder"], whole_tables(settings["folder"], settings["checks"])
+    text = report(folder, tables, Path(output.figures[0]).parent.name, settings["command"])
+    for (check, table), picture in zip(tables.items(), output.figures, strict=True):
+        if table is not None:
+            save(SHOWN[check].draw(table), picture)
         else:
             with io.atomic(picture) as temporary:
                 shutil.copyfile(older_section(folder, check)[1], temporary)

@@ -104,6 +104,28 @@ def is_whole(there, pieces):
     return list(there) == list(pieces) and not lacking(there, pieces)
 
 
+def whole_tables(folder, checks):
+    """Tables of some checks.
+
+    Parameters
+    ----------
+    folder : path-like
+    checks : dict
+        Check -> its pieces, as of `lacking`.
+
+    Returns
+    -------
+    dict of str to pandas.DataFrame or None
+        Check -> its cases, see `ratd.validation.tables.read_tables`; None where `is_whole` does not hold.
+    """
+    found = {}
+    for check, pieces in checks.items():
+        there = read_pieces(folder, check)
+        whole = is_whole(there, pieces)
+        found[check] = io.join_tables(list(there.values())).to_dataframe() if whole else None
+    return found
+
+
 def collect(folder, check, paths, pieces):
     """Write the table of a check from those of its pieces that it has, and the files of others.
 
@@ -123,6 +145,8 @@ def collect(folder, check, paths, pieces):
     """
     kind = kind_of(check)
     there = read_pieces(folder, check)
+    if not paths and is_whole(there, pieces):
+        return
     there = {name: there[name] for name in pieces.keys() - set(lacking(there, pieces))}
     for path in map(Path, paths):
         there[path.stem] = io.read(path, kind)

@@ -1,7 +1,7 @@
 """The report: introduction, then the sections of the checks."""
 
 from ratd.errors import InputError
-from ratd.validation.data import check_table, is_whole, older_section, read_pieces
+from ratd.validation.data import older_section
 from ratd.validation.show import (
     convergence,
     energy,
@@ -62,15 +62,15 @@ def section(check, words, picture):
     return f"{words}\n\n![{check}]({picture})\n"
 
 
-def report(folder, checks, pictures, command):
+def report(folder, tables, pictures, command):
     """The text of docs/validation.md, Markdown.
 
     Parameters
     ----------
     folder : path-like
         Of the tables, see `ratd.validation.data`.
-    checks : dict
-        Check -> name of a piece -> its settings, as in `ratd.validation.plan.Plan.pieces`.
+    tables : dict
+        From `ratd.validation.data.whole_tables`.
     pictures : str
         Folder of the figures, as seen from the document.
     command : str
@@ -83,13 +83,13 @@ def report(folder, checks, pictures, command):
     Raises
     ------
     InputError
-        If a check has neither a table with all pieces that are asked for, and no other, nor an older section.
+        If a check has neither a table nor an older section.
     """
     sections, older = [], []
-    for check, pieces in checks.items():
+    for check, table in tables.items():
         kept = older_section(folder, check)
-        if is_whole(read_pieces(folder, check), pieces):
-            words = SHOWN[check].tell(check_table(folder, check))
+        if table is not None:
+            words = SHOWN[check].tell(table)
         elif all(path.is_file() for path in kept):
             words = kept[0].read_text(encoding="utf-8").rstrip()
             older.append(words.splitlines()[0].removeprefix("## "))
