@@ -6,14 +6,19 @@ import pytest
 
 from ratd.beyond import (
     MONOMER_CLASSES,
+    SEPARATE,
     binomial_interval,
     cross_validation,
+    eq33_omega,
+    fitted_numbers,
     fragment_shares,
     oblate_counts,
     power_law,
     slopes,
 )
+from ratd.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
 from ratd.errors import InputError
+from ratd.materials import get_material
 from synthetic_runs import make_table
 
 SIZES = tuple(50e-9 * k for k in range(1, 9))
@@ -63,6 +68,49 @@ def test_a_grain_that_one_predictor_cannot_predict_counts_for_none(table):
     assert scatter_of(cross_validation(here), "all", "cut bound")["n_grains"] == len(here) - 1
     with pytest.raises(InputError, match="by is 'seed'"):
         cross_validation(table, by="seed")
+
+    with pytest.raises(InputError, match="predictor is 'Eq. 34'"):
+        cross_validation(table, predictors=("Eq. 34",))
+
+
+@pytest.mark.parametrize("by", ["size", "fold"])
+def test_separate_exponents_predict_what_a_common_one_cannot(by):
+    """omega ~ N_mon^0.2 phi^2/a_eff, each type with a number of contacts a monomer of its own."""
+    table = make_table(sizes=SIZES, seeds=6)
+    table["omega_disr"] = 1e2 * table["n_monomers"] ** 0.2 * table["filling_factor"] ** 2 / table["a_eff"]
+    found = cross_validation(table, by=by, predictors=("Eq. 33", SEPARATE))
+    for kind in ("BA", "BAM1", "BAM2", "all"):
+        one, several = (scatter_of(found, kind, name) for name in ("Eq. 33", SEPARATE))
+        assert several["scatter"] == pytest.approx(0, abs=1e-9) and one["scatter"] > 0.01
+        assert one["over_first"] == 1 and one["over_first_error"] == 0
+        assert several["over_first"] == several["scatter"] / one["scatter"] and several["over_first_error"] < 1e-6
+
+
+def test_separate_exponents_that_the_grains_leave_open_are_none():
+    """Grains with the same number of contacts a monomer throughout tell nothing of its exponent."""
+    table = make_table(sizes=SIZES, seeds=6)
+    table["n_contacts"] = 2 * table["n_monomers"]
+    table["omega_disr"] = 1e2 * table["n_monomers"] ** 0.2 * table["filling_factor"] ** 2 / table["a_eff"]
+    few = table[table["seed"] == 0].groupby(["material", "type"]).head(3)
+    assert scatter_of(cross_validation(table, predictors=(SEPARATE,)), "all", SEPARATE)["scatter"] < 1e-9
+    assert scatter_of(cross_validation(few, predictors=(SEPARATE,)), "all", SEPARATE)["n_grains"] == 0
+
+
+def test_eq_33_of_many_grains_is_that_of_each(table):
+    fit = fit_ensemble(table, n_bootstrap=1)
+    for reading in fit["mean_radius"].values:
+        numbers = fitted_numbers(fit, reading)
+        radius = radius_of_reading(reading)
+        found = eq33_omega(table, numbers | {("q-S", "BA"): (1.0, 0.0)}, radius)
+        for _, row in table.sample(20, random_state=0).iterrows():
+            cell, material = (row["material"], row["type"]), get_material(row["material"])
+            given = row["mean_monomer_radius"] if reading == "own" else PAPER_MEAN_RADIUS
+            best = fit.sel(mean_radius=reading, material=cell[0], type=cell[1])
+            pair = (1.0, 0.0) if cell == ("q-S", "BA") else (float(best["A"]), float(best["alpha"]))
+            scale = row["a_eff"], material.surface_energy, material.density, given
+            expected = eq33(*scale, row["n_contacts"], row["filling_factor"], *pair)
+            assert found[row.name] == pytest.approx(expected, rel=1e-12)
+    assert eq33_omega(table, {}, PAPER_MEAN_RADIUS).isna().all()
 
 
 def power_table(below, above, noise=0.05, split=300e-9):

@@ -19,7 +19,7 @@ from ratd.figures import save
 from ratd.formula_table import FORMULAE
 from ratd.growth import grow
 from ratd.materials import MATERIALS
-from ratd.reproduction import figures
+from ratd.reproduction import disrupted, figures
 from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES, FIRM_BOUNDS, GROWN, Data
@@ -246,6 +246,27 @@ def test_grains_of_fig_9_are_set_beside_themselves_with_the_step_of_the_ensemble
     assert "both the ensemble and Fig. 9" not in report(data, "reproduction")
     data.plan.config["literal"] |= {"epsilon": 0.02, "angular_acceleration": None}
     assert "both the ensemble and Fig. 9" not in report(data, "reproduction")
+
+
+def test_fit_is_set_beside_the_means_of_each_size_and_beside_separate_exponents(folder):
+    """The made-up grains obey Eq. 33; with those of 350 nm half as fast again it follows the means no longer."""
+    data = Data(str(folder), checks=NO_CHECKS)
+
+    def holds(key):
+        answers = next(row for row in disrupted.rows(data) if row.key == key).answers
+        return {drive: own.holds for drive, own in answers.items()}, next(iter(answers.values())).text
+
+    assert set(holds("match")[0]) == set(data.drives) and False not in holds("match")[0].values()
+    assert False not in holds("exponents")[0].values()
+    for drive, table in data.tables.items():
+        fast = np.isclose(table["a_eff"], 350e-9)
+        data.tables[drive] = table.assign(omega_disr=table["omega_disr"] * np.where(fast, 1.5, 1.0))
+    verdicts, told = holds("match")
+    assert set(verdicts.values()) == {False} and told.count("(350 nm)") == 3
+    for drive, table in data.tables.items():
+        law = table["n_monomers"] ** 0.2 * table["filling_factor"] ** 2 / table["a_eff"]
+        data.tables[drive] = table.assign(omega_disr=1e2 * law)
+    assert set(holds("exponents")[0].values()) == {False}
 
 
 def test_what_a_drive_was_fixed_on_decides_nothing(folder):

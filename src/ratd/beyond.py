@@ -9,7 +9,7 @@ from statistics import NormalDist
 import numpy as np
 import pandas as pd
 
-from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, eq33, fit_ensemble, radius_of_reading, size_key
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, eq33, fit_ensemble, size_key
 from ratd.errors import InputError
 from ratd.materials import get_material
 from ratd.statistics import equal_weights, mean_of, slope_error, slope_of
@@ -23,11 +23,15 @@ PREDICTORS = {
     "cut bound by type": "c times the cut bound, one c a type, 3 numbers",
 }
 """What is compared out of sample, and what each of them fits."""
+SEPARATE = "Eq. 33, separate exponents"
+"""Eq. 33 with an exponent each for <N_con>, N_mon and phi, of which the paper says that it fits no better."""
 LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out"}
 """Ways to leave grains out of a fit, in words."""
 
 
-def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, materials=None):
+def cross_validation(
+    table, mark="omega_disr", by="size", folds=5, seed=0, materials=None, predictors=tuple(PREDICTORS)
+):
     """How well Eq. 33 and the cut bound predict omega of grains that they were not fitted to.
 
     Parameters
@@ -45,39 +49,40 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
         Of the folds and of the bootstrap.
     materials : optional
         Table of materials, handed to `ratd.materials.get_material`.
+    predictors : sequence of str
+        Of `PREDICTORS` and `SEPARATE`.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each of `PREDICTORS` and for each type and "all": scatter (root mean square of the residuals of
+        A row for each of `predictors` and for each type and "all": scatter (root mean square of the residuals of
         ln omega out of sample), error (bootstrap over grains), bias (mean residual, found - predicted), more (scatter
-        less that of the predictor with the least) with more_error (from the same draws for both), n_grains. Only grains
-        count that all predictors predict; all cells count alike.
+        less that of the predictor with the least) with more_error, over_first (scatter over that of the first
+        predictor) with over_first_error (both from the same draws for the two), n_grains. Only grains count that all
+        predictors predict; all cells count alike.
 
     Raises
     ------
     InputError
-        If `by` is none of the two.
+        If `by` or a predictor is none of these.
     """
     if by not in LEFT_OUT:
         raise InputError(f"cross_validation: by is {by!r}, allowed are {' and '.join(map(repr, LEFT_OUT))}")
-    needed = [mark, "cut_bound", "n_contacts", "filling_factor", "a_eff"]
+    for name in predictors:
+        if name not in _PREDICT:
+            raise InputError(f"cross_validation: predictor is {name!r}, allowed are {', '.join(map(repr, _PREDICT))}")
+    needed = [mark, "cut_bound", "n_monomers", "n_contacts", "filling_factor", "a_eff"]
     table = table[(table[needed].astype(float) > 0).all(axis=1)].reset_index(drop=True)
     rng = np.random.Generator(np.random.PCG64(seed))
     group = size_key(table["a_eff"]).to_numpy() if by == "size" else rng.permutation(len(table)) % folds
-    residual = pd.DataFrame(np.nan, index=table.index, columns=list(PREDICTORS))
+    residual = pd.DataFrame(np.nan, index=table.index, columns=list(predictors))
     for value in np.unique(group):
         out = group == value
         if out.all():
             continue
         train, test = table[~out], table[out]
-        residual.loc[out, "Eq. 33"] = np.log(test[mark] / _predict_eq33(train, test, mark, materials))
-        ratio = pd.DataFrame({"type": train["type"], "log": np.log(train[mark] / train["cut_bound"])})
-        ratio["cell"] = cell_of(train)
-        own = np.log(test[mark] / test["cut_bound"])
-        residual.loc[out, "cut bound"] = own - mean_of(ratio["log"], ratio["cell"])[0]
-        of_type = {kind: mean_of(part["log"], part["cell"])[0] for kind, part in ratio.groupby("type")}
-        residual.loc[out, "cut bound by type"] = own - test["type"].map(of_type)
+        for name in predictors:
+            residual.loc[out, name] = np.log(test[mark]) - _PREDICT[name](train, test, mark, materials)
     known = residual.notna().all(axis=1)
     rows = []
     for kind in [*dict.fromkeys(table["type"]), "all"]:
@@ -85,36 +90,116 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, mater
         weights = equal_weights(cell_of(table[chosen]))
         found = _scatter(residual.loc[chosen].to_numpy(), weights, rng)
         rows += [{"type": kind, "predictor": name, **own, "n_grains": int(chosen.sum())}
-                 for name, own in zip(PREDICTORS, found, strict=True)]  # fmt: skip
+                 for name, own in zip(predictors, found, strict=True)]  # fmt: skip
     return pd.DataFrame(rows)
 
 
-def _predict_eq33(train, test, mark, materials):
-    """Eq. 33 fitted to some grains, for others; NaN where there is no fit."""
-    fit = fit_ensemble(train, PAPER_MEAN_RADIUS, mark=mark, n_bootstrap=1, materials=materials)
-    reading = fit["mean_radius"].values[0]
-    predicted = np.full(len(test), np.nan)
-    for (name, kind), rows in test.reset_index(drop=True).groupby(["material", "type"]):
-        if name not in fit["material"].values or kind not in fit["type"].values:
+def eq33_omega(table, numbers, mean_radius, materials=None):
+    """omega of Eq. 33 for each grain, with the A and alpha of its material and type.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain.
+    numbers : dict
+        (material, type) -> (A, alpha).
+    mean_radius : float or None
+        <a_mon> [m], None for the mean radius of each grain's own monomers, as of `ratd.ensemble.radius_of_reading`.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    pandas.Series
+        omega [rad s-1], NaN where there are no numbers.
+    """
+    result = pd.Series(np.nan, index=table.index)
+    for cell, rows in table.groupby(["material", "type"]):
+        if cell not in numbers:
             continue
-        best = fit.sel(mean_radius=reading, material=name, type=kind)
-        material = get_material(name, materials)
-        scale = (rows["a_eff"], material.surface_energy, material.density, radius_of_reading(reading))
-        shape = (rows["n_contacts"], rows["filling_factor"], float(best["A"]), float(best["alpha"]))
-        predicted[rows.index] = eq33(*scale, *shape)
+        material = get_material(cell[0], materials)
+        radius = rows["mean_monomer_radius"] if mean_radius is None else mean_radius
+        scale = rows["a_eff"], material.surface_energy, material.density, radius
+        result[rows.index] = eq33(*scale, rows["n_contacts"], rows["filling_factor"], *numbers[cell])
+    return result
+
+
+def fitted_numbers(fit, reading):
+    """A and alpha of a fit (`ratd.ensemble.fit_ensemble`) for one reading of <a_mon>, for `eq33_omega`."""
+    best = fit.sel(mean_radius=reading)
+    return {
+        (material, kind): (best["A"].sel(material=material, type=kind).item(),
+                           best["alpha"].sel(material=material, type=kind).item())
+        for material in fit["material"].values.tolist() for kind in fit["type"].values.tolist()
+    }  # fmt: skip
+
+
+def _by_eq33(train, test, mark, materials):
+    """ln omega by Eq. 33 fitted to the grains `train`, for those of `test`; NaN where there is no fit."""
+    fit = fit_ensemble(train, PAPER_MEAN_RADIUS, mark=mark, n_bootstrap=1, materials=materials)
+    numbers = fitted_numbers(fit, fit["mean_radius"].values[0])
+    return np.log(eq33_omega(test, numbers, PAPER_MEAN_RADIUS, materials))
+
+
+def _by_separate_exponents(train, test, mark, materials):
+    """As `_by_eq33`, with an exponent each for <N_con>, N_mon and phi."""
+    predicted = pd.Series(np.nan, index=test.index)
+    known = {cell: rows for cell, rows in train.groupby(["material", "type"])}
+    for cell, rows in test.groupby(["material", "type"]):
+        own = known.get(cell)
+        if own is None or len(own) <= len(_exponents_of(own).T):
+            continue
+        root = np.sqrt(equal_weights(size_key(own["a_eff"])))
+        y = np.log(own[mark] * own["a_eff"]).to_numpy(float)
+        # of least norm about the means, where grains leave an exponent open, as <N_con> of grains without loops does
+        x = _exponents_of(own)
+        means = np.average(x, axis=0, weights=root**2), np.average(y, weights=root**2)
+        powers = np.linalg.lstsq((x - means[0]) * root[:, None], (y - means[1]) * root, rcond=1e-9)[0]
+        predicted[rows.index] = means[1] + (_exponents_of(rows) - means[0]) @ powers - np.log(rows["a_eff"])
     return predicted
 
 
+def _exponents_of(rows):
+    """Logarithms that the separate exponents multiply, shape (n, 3)."""
+    per_monomer = rows["n_contacts"] / rows["n_monomers"]
+    return np.log(np.column_stack([per_monomer, rows["n_monomers"], rows["filling_factor"]]).astype(float))
+
+
+def _by_cut_bound(train, test, mark, materials):
+    """ln omega as a constant times the cut bound."""
+    return np.log(test["cut_bound"]) + _over_bound(train, mark)
+
+
+def _by_cut_bound_of_type(train, test, mark, materials):
+    """ln omega as a constant of its type times the cut bound."""
+    of_type = {kind: _over_bound(part, mark) for kind, part in train.groupby("type")}
+    return np.log(test["cut_bound"]) + test["type"].map(of_type)
+
+
+def _over_bound(table, mark):
+    """Mean ln of omega over the cut bound; all cells count alike."""
+    return mean_of(np.log(table[mark] / table["cut_bound"]), cell_of(table))[0]
+
+
+_PREDICT = {
+    **dict(zip(PREDICTORS, (_by_eq33, _by_cut_bound, _by_cut_bound_of_type), strict=True)),
+    SEPARATE: _by_separate_exponents,
+}
+
+
 def _scatter(residual, weights, rng):
-    """Root mean square of each column with its bootstrap error, its mean, and by how much it exceeds the least one."""
+    """Root mean square of each column with its bootstrap error, its mean, how it compares with the least and first."""
     n, columns = residual.shape
     if n < 2:
-        return [dict.fromkeys(("scatter", "error", "bias", "more", "more_error"), np.nan)] * columns
+        names = ("scatter", "error", "bias", "more", "more_error", "over_first", "over_first_error")
+        return [dict.fromkeys(names, np.nan)] * columns
     scatter = np.sqrt(np.average(residual**2, axis=0, weights=weights))
     draws = rng.integers(n, size=(N_BOOTSTRAP, n))
     often = np.array([np.bincount(draw, minlength=n) for draw in draws]) * weights
     drawn = np.sqrt(often @ residual**2 / often.sum(axis=1, keepdims=True))
     more = drawn - drawn[:, [scatter.argmin()]]
+    with np.errstate(invalid="ignore", divide="ignore"):  # the first may be exact
+        over_first, drawn_over_first = scatter / scatter[0], drawn / drawn[:, [0]]
     return [
         {
             "scatter": float(scatter[k]),
@@ -122,6 +207,8 @@ def _scatter(residual, weights, rng):
             "bias": float(np.average(residual[:, k], weights=weights)),
             "more": float(scatter[k] - scatter.min()),
             "more_error": float(np.std(more[:, k], ddof=1)),
+            "over_first": float(over_first[k]),
+            "over_first_error": float(np.std(drawn_over_first[:, k], ddof=1)),
         }
         for k in range(columns)
     ]

@@ -3,9 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from ratd.beyond import SPLIT, slopes
+from ratd.beyond import SPLIT, eq33_omega, slopes
 from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
-from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_of, eq33, size_key
+from ratd.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_of, size_key
 from ratd.materials import get_material
 from ratd.reproduction.text import NOTHING, number
 from ratd.statistics import median_of
@@ -54,21 +54,7 @@ def table3_omega(table, materials=None):
     -------
     pandas.Series
     """
-    result = pd.Series(np.nan, index=table.index)
-    for (name, kind), rows in table.groupby(["material", "type"]):
-        if (name, kind) not in TABLE_3:
-            continue
-        material = get_material(name, materials)
-        result[rows.index] = eq33(
-            rows["a_eff"],
-            material.surface_energy,
-            material.density,
-            PAPER_MEAN_RADIUS,
-            rows["n_contacts"],
-            rows["filling_factor"],
-            *TABLE_3[name, kind],
-        )
-    return result
+    return eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS, materials)
 
 
 def printed_slopes(table, materials=None):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.beyond import SPLIT, slopes
-from ratd.ensemble import cell_statistics
+from ratd.beyond import LEFT_OUT, SEPARATE, SPLIT, cross_validation, eq33_omega, fitted_numbers, slopes
+from ratd.ensemble import cell_of, cell_statistics, radius_of_reading, size_key
 from ratd.figures.figure10 import relative_error
 from ratd.markdown import plural
 from ratd.parameters import MARKS
@@ -37,11 +37,15 @@ INDEPENDENT = 0.1
 """Power of d omega/dt that counts as none."""
 NO_TREND = 0.05
 """Change of omega with a parameter that counts as none."""
+MATCHES = 0.1
+"""Distance of a mean from a fit, over the fit, up to which the fit matches very well."""
+NO_BETTER = 0.95
+"""Scatter over that of another fit from which on it is no better than that."""
 
 
 def rows(data):
     """Rows that need spin-ups, list of Row."""
-    own = [_coverage(data), _terminal(data), _drag_time(data), *_omega(data), *_parameters(data)]
+    own = [_coverage(data), _terminal(data), _drag_time(data), *_omega(data), *_fit(data), *_parameters(data)]
     return [*own, *course.rows(data), *shapes.rows(data)]
 
 
@@ -167,6 +171,63 @@ def _over_strengths(data, table, printed):
     text = f"{between(ratio.min(), ratio.max())} ({of})"
     verdicts = {near(value, printed.value, ROUGHLY) for value in ratio}  # the paper does not say of which model
     return Answer(text, over(ratio.max(), printed.value), verdicts.pop() if len(verdicts) == 1 else None)
+
+
+def _fit(data):
+    """Rows on Eq. 33 fitted to our grains: whether it follows their means, and separate exponents do so better."""
+    materials = data.plan.materials
+
+    def match(source, printed):
+        table, fit = source
+        reading = str(fit["mean_radius"].values[0])
+        fitted = eq33_omega(table, fitted_numbers(fit, reading), radius_of_reading(reading), materials)
+        own = table.assign(over=np.log(table["omega_disr"] / fitted))
+        parts, verdicts = [], []
+        for kind, rows in own[own["over"].notna()].groupby("type", sort=False):
+            sizes = [
+                (part["a_eff"].iloc[0], *mean_of(part["over"], cell_of(part)))
+                for _, part in rows.groupby(size_key(rows["a_eff"]))
+            ]
+            verdicts += [lies_in(*one, *np.log([1 - MATCHES, 1 + MATCHES])) for _, *one in sizes]
+            ends = [end(sizes, key=lambda one: one[1]) for end in (min, max)]
+            told = [
+                f"{with_error(np.exp(mean), np.exp(mean) * error)} ({size / NM:g} nm)" for size, mean, error in ends
+            ]
+            parts.append(f"{kind} {' to '.join(told)}")
+        return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
+
+    def separate(table, printed):
+        found = {by: _over_one_exponent(table, by, materials) for by in LEFT_OUT}
+        value = found["fold"].pop("all")
+        if not np.isfinite(value[0]):
+            return None
+        types = ", ".join(f"{kind} {with_error(*own)}" for kind, own in found["fold"].items())
+        beyond = f"{with_error(*found['size']['all'])} with {LEFT_OUT['size']}"
+        return Answer(f"{with_error(*value)} ({types}); {beyond}", holds=lies_in(*value, NO_BETTER))
+
+    return [
+        drive_rows(
+            "match",
+            {drive: (data.tables[drive], fit) for drive, fit in data.fits.items()},
+            match,
+            "Geometric means, least and greatest of the sizes, in which all materials count alike; those with one "
+            "grain a cell have no error. A and alpha of Table 3 below, with its first <a_mon>.",
+        ),
+        drive_rows(
+            "exponents",
+            data.tables,
+            separate,
+            "Root mean squares of ln omega_disr of grains that were left out of the fit, for with more numbers a fit "
+            "always comes nearer to its own grains. Three exponents leave the power of size free.",
+        ),
+    ]
+
+
+def _over_one_exponent(table, by, materials):
+    """Type, or "all", -> scatter with separate exponents over that with one, and its error."""
+    found = cross_validation(table, by=by, materials=materials, predictors=("Eq. 33", SEPARATE))
+    own = found[found["predictor"] == SEPARATE].set_index("type")
+    return dict(zip(own.index, zip(own["over_first"], own["over_first_error"], strict=True), strict=True))
 
 
 def _parameters(data):

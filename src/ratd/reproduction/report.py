@@ -98,8 +98,7 @@ def report(data, pictures, captions=None):
         "under “holds if”: within a quarter is a factor of 1.25 either way, to a tenth is 10 % beyond either end. "
         "Where an error is given, yes and no need two errors; values without one (extremes, ranges, the cell of Fig. "
         "4) are compared as they stand. A dash: not decided, no rule, or used to fix the drive. Left out are Fig. 3, a "
-        "sketch, and what the paper says of its own runs (their energy error and number of steps), of other work, and "
-        "of fits with other exponents.",
+        "sketch, and what the paper says of its own runs (their energy error and number of steps) and of other work.",
         *_printed_numbers(rows, drives),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
