@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from ratd.beyond import binomial_interval
 from ratd.calibration import onset
 from ratd.ensemble import cell_of
 from ratd.fragmentation import HALF
-from ratd.marks import disruption
+from ratd.marks import ROUNDING, disruption
 from ratd.reproduction.bounds import by_type_and_size, in_cell, sizes_of, split_sizes
 from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
@@ -17,6 +18,7 @@ from ratd.reproduction.text import (
     answer,
     between,
     drive_rows,
+    lies_in,
     number,
     over,
     with_error,
@@ -35,6 +37,8 @@ PIECES = (
 EARLY_CONTACTS = "A hundredth of the load of omega_disr, far from what breaks a contact. Given for the cell of Fig. 4."
 MOSTLY = 0.8
 """Share that counts as "almost completely"."""
+RARELY = 0.1
+"""Share that counts as "rarely"."""
 LARGER = 0.95
 """Mass of the largest fragment below which larger ones have left."""
 
@@ -56,6 +60,7 @@ def rows(data):
             _gain,
             "The median of all BAM2 grains, for which the paper finds the gain most pronounced.",
         ),
+        drive_rows("gain_most", data.tables, _gain_most, "Medians."),
         drive_rows(
             "quarter",
             data.tables,
@@ -63,6 +68,7 @@ def rows(data):
             "Where it is far below 1, large pieces of a grain have left before the stress of what is left peaks.",
         ),
         *_whole(data),
+        drive_rows("reconnect", data.course, _reconnects, "Records of the runs of the cell of Fig. 4."),
         drive_rows(
             "blocks",
             {drive: table[table["half"] & table["type"].isin(BAM)] for drive, table in data.fragments.items()},
@@ -116,6 +122,32 @@ def _gain(table, printed):
     ]
     text = f"{with_error(found['median'], found['error'])} ({'; '.join(parts)})"
     return Answer(text, holds=bool(found["median"] > 1))
+
+
+def _gain_most(table, printed):
+    """Median gain of contacts of BAM2 less the greater one of BA and BAM1."""
+    gain = table["n_contacts_max"] / table["n_contacts"]
+    found = {kind: median_of(gain[own.index], cell=cell_of(own)) for kind, own in table.groupby("type", sort=False)}
+    if len(found) < 2 or "BAM2" not in found:
+        return None
+    other = max((kind for kind in found if kind != "BAM2"), key=lambda kind: found[kind]["median"])
+    value = found["BAM2"]["median"] - found[other]["median"]
+    error = np.hypot(found["BAM2"]["error"], found[other]["error"])
+    medians = ", ".join(f"{kind} {number(own['median'])}" for kind, own in found.items())
+    return Answer(f"{with_error(value, error)} ({medians})", holds=lies_in(value, error, low=0.0))
+
+
+def _reconnects(runs, printed):
+    """How often the largest fragment gains mass among all changes of its mass."""
+    steps = [np.diff(run["mass"].values) / run.attrs["initial_mass"] for run in runs]
+    changes = np.concatenate([step[np.abs(step) > ROUNDING] for step in steps])
+    gains, n = int((changes > 0).sum()), len(changes)
+    if not n:
+        return None
+    low, high = binomial_interval(gains, n)
+    return Answer(
+        f"{number(gains / n)} ({gains} of {n})", holds=True if high < RARELY else False if low > RARELY else None
+    )
 
 
 def _quarter(table, printed):

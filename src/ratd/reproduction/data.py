@@ -33,7 +33,7 @@ FROM_RESULTS = {
     "formulae/table.nc": FORMULAE,
 }
 """File of a study below the results -> its name here. A study may have been made with another config."""
-STUDIES = ("lammps", "literal", "convergence")
+STUDIES = ("lammps", "literal", "convergence", "growth")
 """Checks of the validation that the document takes numbers from."""
 DRAWN_STUDIES = ("lammps", "literal")
 """Those of `STUDIES` that it has a figure of."""

@@ -5,7 +5,7 @@ from ratd.composition import tell
 from ratd.ensemble import cell_of, size_key
 from ratd.markdown import markdown_table
 from ratd.marks import MEDIAN_WINDOW
-from ratd.reproduction import argument, disrupted, grown, open_questions, rate
+from ratd.reproduction import argument, disrupted, grown, open_questions, pair_test, rate, structure
 from ratd.reproduction.bounds import sizes_of, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
@@ -85,7 +85,7 @@ def report(data, pictures, captions=None):
     str
     """
     drives = data.drives
-    rows = [*grown.rows(data), *disrupted.rows(data), *disrupted.pairs(data)]
+    rows = [*grown.rows(data), *structure.rows(data), *disrupted.rows(data), *disrupted.pairs(data)]
     parts = [
         _introduction(data),
         "## In short",
@@ -98,7 +98,9 @@ def report(data, pictures, captions=None):
         "under “holds if”: within a quarter is a factor of 1.25 either way, to a tenth is 10 % beyond either end. "
         "Where an error is given, yes and no need two errors; values without one (extremes, ranges, the cell of Fig. "
         "4) are compared as they stand. A dash: not decided, no rule, or used to fix the drive. Left out are Fig. 3, a "
-        "sketch, and what the paper says of its own runs (their energy error and number of steps) and of other work.",
+        "sketch; what the paper says of its own runs (their energy error, number of steps and Euler forces) and of "
+        "other work; and what the data do not tell: the fractal dimension at disruption, what a grain does where the "
+        "spin-up stops, and Fig. 9 for q-S and co-S.",
         *_printed_numbers(rows, drives),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
@@ -236,6 +238,8 @@ def _argument(data, pictures):
         "### One free number of the literal drive",
         rate.calibration_section(data),
         *_further(data, "calibration", pictures),
+        "### The pairs of Fig. 10 under the printed equations",
+        pair_test.section(data),
         "### Each printed formula alone",
         argument.formula_section(data),
         *_further(data, "formulae", pictures),

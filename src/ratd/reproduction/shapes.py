@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ratd.beyond import oblate_share
+from ratd.beyond import is_oblate, oblate_share
 from ratd.ensemble import cell_of
 from ratd.reproduction.bounds import sizes_of, split_sizes
 from ratd.reproduction.course import BAM
-from ratd.reproduction.text import NOTHING, Answer, all_of, drive_rows, lies_in, near, over, with_error
+from ratd.reproduction.text import NOTHING, Answer, all_of, drive_rows, lies_in, near, number, over, with_error
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
@@ -32,11 +32,13 @@ def rows(data):
         drive_rows("c_over_b", grown, _slender),
         drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), EARLY),
         drive_rows("oblate_disr_BA", tables, _oblate("disr", 0.0, 0.5, 200, ("BA",))),
+        drive_rows("more_oblate", tables, _more_oblate, EARLY),
         drive_rows("b_over_a", tables, _flattest, EARLY),
         drive_rows("b_over_a_BA", tables, _less_flat, "Arms of BA grains swing out and stretch before they part."),
         drive_rows("porosity_change_BA", tables, _loosened(("BA",), -np.inf, 0.0), REMNANTS),
         drive_rows("porosity_change_BAM", tables, _loosened(BAM, 0.0, np.inf), REMNANTS),
         drive_rows("porosity_alike", tables, _alike),
+        drive_rows("variation", tables, _variation, "Mean distance from the mean of the cell."),
     ]
 
 
@@ -73,6 +75,23 @@ def _oblate(when, low, high, size=None, types=None):
         return Answer(text, ratio, lies_in(share, error, low, high))
 
     return evaluate
+
+
+def _more_oblate(table, printed):
+    """Mean change of being oblate from rest to omega_disr, of the grains whose shape is known at both."""
+    shapes = {when: [table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc"] for when in ("start", "disr")}
+    known = np.all([np.isfinite(axes).all(axis=0) & (axes[0] > 0) for axes in shapes.values()], axis=0)
+    became = is_oblate(*shapes["disr"]).astype(int) - is_oblate(*shapes["start"])
+    own = table.assign(became=became)[known]
+    bam = own[own["type"].isin(BAM)]
+    if not len(bam):
+        return None
+    value = mean_of(bam["became"], cell_of(bam))
+    types = ", ".join(
+        f"{kind} {with_error(*mean_of(part['became'], cell_of(part)))}"
+        for kind, part in own.groupby("type", sort=False)
+    )
+    return Answer(f"{with_error(*value)} ({types})", holds=lies_in(*value, 0.0))
 
 
 def _slender(table, printed):
@@ -127,6 +146,25 @@ def _loosened(types, low, high):
         return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
 
     return evaluate
+
+
+def _variation(table, printed):
+    """Mean distance of the porosity from the mean of its cell at omega_disr less that at rest, of each type."""
+    parts, verdicts = [], []
+    for kind, own in _chosen(table, types=BAM).groupby("type", sort=False):
+        own = own[own["porosity_disr"].notna()]
+        own = own.assign(cell=cell_of(own)).groupby("cell").filter(lambda part: len(part) > 1)
+        cells = own.groupby("cell")
+        off = {
+            when: (own[f"porosity_{when}"] - cells[f"porosity_{when}"].transform("mean")).abs()
+            for when in ("disr", "start")
+        }
+        value = mean_of(off["disr"] - off["start"], own["cell"])
+        if np.isfinite(value[0]):
+            at_rest = mean_of(off["start"], own["cell"])[0]
+            parts.append(f"{kind} {with_error(*value)} (at rest {number(at_rest)})")
+            verdicts.append(lies_in(*value, 0.0))
+    return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
 
 
 def _alike(table, printed):

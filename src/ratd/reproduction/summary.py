@@ -7,7 +7,7 @@ from ratd.beyond import SPLIT, slopes
 from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
-from ratd.reproduction import grown
+from ratd.reproduction import grown, pair_test
 from ratd.reproduction.argument import lammps_over_ratd, printed_above, ratios_to_ratd
 from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes, sizes_of, split_sizes
 from ratd.reproduction.open_questions import least_of
@@ -40,7 +40,7 @@ def summary(data, rows):
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
     grown_ratios = ratios(data.grown, data.plan.materials)
     lines = [_answer(grown_ratios)] if len(tables) > 1 else []
-    lines += [_bound(grown_ratios), *_lammps(data)]
+    lines += [_bound(grown_ratios), *_lammps(data), *pair_test.in_short(data)]
     for drive, table in tables.items():
         lines.append(_level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive))
     calibrated = calibrated_grains(data)
@@ -91,12 +91,14 @@ def _verdicts(rows, drives):
     def named(chosen):
         return "; ".join(f"{row.printed.what} ({row.printed.text})" for row in chosen) or "none"
 
+    seen = {drive: [row for row in own if drive in row.answers and row.answers[drive].holds] for drive in drives}
+    both = [row for row in own if all(row in rows for rows in seen.values())]
     if len(drives) > 1:
         none = [row for row in own if all(answer.holds is False for answer in row.answers.values())]
-        lines.append(f"**Seen in neither drive**: {named(none)}.")
-    for drive in drives:
-        seen = [row for row in own if drive in row.answers and row.answers[drive].holds]
-        lines.append(f"**Seen with the drive `{drive}`**: {named(seen)}.")
+        lines += [f"**Seen in neither drive**: {named(none)}.", f"**Seen in both drives**: {named(both)}."]
+    for drive, rows in seen.items():
+        alone = [row for row in rows if row not in both] if len(drives) > 1 else rows
+        lines.append(f"**Seen with the drive `{drive}`{' alone' if len(drives) > 1 else ''}**: {named(alone)}.")
     return lines
 
 

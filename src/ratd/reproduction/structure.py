@@ -1,0 +1,91 @@
+"""Rows of how the monomers lie in a grain as grown: how densely, which of them inside, and its fractal dimension."""
+
+import numpy as np
+
+from ratd.ensemble import size_key
+from ratd.reproduction.bounds import PM
+from ratd.reproduction.course import BAM
+from ratd.reproduction.text import Answer, Row, all_of, lies_in, with_error
+from ratd.statistics import mean_of
+from ratd.units import NM
+
+CORRELATED = 0.3
+"""Rank correlation from which on two things are well correlated."""
+BEYOND = 1.5
+"""Factor in the number of monomers to which the curve of aggregates of equal ones is continued."""
+FEWEST = 10
+"""Grains of a size below which nothing is said of it."""
+
+
+def rows(data):
+    """Rows of the structure, list of Row."""
+    return [_compact(data.study("growth")), _deeper(data.grains), _fractal_shape(data.grown)]
+
+
+def _compact(table):
+    """Porosity of grains with the radii of the ensemble, less that of as many equal monomers."""
+    if table is None:
+        return Row("compact")
+    table = table[(table["migration"] == "nearest") & table["type"].isin(BAM)]
+    parts, verdicts = [], []
+    for kind, own in table.groupby("type", sort=False):
+        equal, grains = (own[own["study"] == study] for study in ("aggregates", "grains"))
+        curve, covariance = np.polyfit(np.log(equal["n_monomers"]), equal["porosity"], 2, cov=True)
+        grains = grains[grains["n_monomers"].between(equal["n_monomers"].min(), BEYOND * equal["n_monomers"].max())]
+        told = []
+        for size, part in grains.groupby(size_key(grains["a_eff"])):
+            if len(part) < FEWEST:
+                continue
+            place = np.vander(np.log(part["n_monomers"]), 3)
+            less, mean = part["porosity"] - place @ curve, place.mean(axis=0)
+            value = less.mean(), np.hypot(less.sem(), np.sqrt(mean @ covariance @ mean))
+            told.append(f"{with_error(*value)} ({size * PM / NM:g} nm)")
+            verdicts.append(lies_in(*value, high=0.0))
+        parts.append(f"{kind} {', '.join(told)}")
+    reason = (
+        "Grains of Fig. 1 against a parabola in ln N_mon through aggregates of equal monomers (docs/validation.md, "
+        "Growth), as far as these go; all migrate to the nearest place."
+    )
+    return Row("compact", {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}, reason)
+
+
+def _deeper(grains):
+    """Whether smaller monomers lie deeper in the grains of Fig. 1."""
+    parts, verdicts = [], []
+    for kind in dict.fromkeys(grain.type for grain in grains):
+        own = [grain for grain in grains if grain.type == kind]
+        value = np.mean([_rank_correlation(grain.radius, _depth(grain)) for grain in own])
+        error = np.sqrt(sum(1 / (grain.n_monomers - 1) for grain in own)) / len(own)
+        parts.append(f"{kind} {with_error(value, error)}")
+        if kind in BAM:
+            verdicts.append(lies_in(value, error, low=0.0))
+    answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}
+    reason = "Grains of Fig. 1; ± from the number of monomers. A larger one reaches out farther where it is hit."
+    return Row("deeper", answers, reason)
+
+
+def _depth(grain):
+    """Distance of each monomer from the centre of mass [m], shape (n,)."""
+    centre = np.average(grain.position, axis=0, weights=grain.radius**3)
+    return np.linalg.norm(grain.position - centre, axis=1)
+
+
+def _rank_correlation(x, y):
+    """Spearman's correlation of two samples of equal length, without regard to ties."""
+    return float(np.corrcoef(np.argsort(np.argsort(x)), np.argsort(np.argsort(y)))[0, 1])
+
+
+def _fractal_shape(table):
+    """Rank correlation of the fractal dimension with c/a within each size; mean over the sizes of a type."""
+    known = table[table["fractal_dimension"].notna()]
+    parts, verdicts = [], []
+    for kind, own in known.groupby("type", sort=False):
+        sizes = [part for _, part in own.groupby(size_key(own["a_eff"])) if len(part) >= FEWEST]
+        if len(sizes) < 2:
+            continue
+        found = [_rank_correlation(part["fractal_dimension"], part["axis_c"] / part["axis_a"]) for part in sizes]
+        value = mean_of(found)
+        parts.append(f"{kind} {with_error(*value)}")
+        verdicts.append(lies_in(*value, -CORRELATED, CORRELATED))
+    answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if parts else {}
+    return Row("fractal_shape", answers, "Spearman's, of the grains of one type and size; mean over the sizes.")

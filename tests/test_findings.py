@@ -1,0 +1,166 @@
+"""Rows of the reproduction on made-up runs, tables and grains with known answers."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ratd.reproduction import course, disrupted, peak, shapes, structure
+from synthetic_runs import make_run, make_table
+
+
+def holds(rows, key, drive="prescribed"):
+    return next(row for row in rows if row.key == key).answers[drive].holds
+
+
+@pytest.fixture
+def table():
+    return make_table(sizes=(100e-9, 200e-9), seeds=12)
+
+
+def with_stress(*stress):
+    """Run of as many records that keeps its mass until the last one, in which little is left."""
+    run = make_run(1e8, steps=[(2e8, 0.1)], end=2e8).isel(record=slice(0, len(stress)))
+    mass = np.full(len(stress), 4.76e-16)
+    mass[-1] *= 0.1
+    return run.assign(
+        omega=("record", 1e6 * np.arange(1.0, len(stress) + 1)), total_stress=("record", np.array(stress, float)),
+        mass=("record", mass),
+    ).assign_attrs(end_reason="one contact left")  # fmt: skip
+
+
+def test_rise_and_fall_of_the_stress_are_those_of_its_running_median():
+    steady = with_stress(*range(1, 101), *[100] * 3, *[40] * 9)
+    assert peak.greatest_fall(steady) == 0
+    # the median over 5 records holds the plateau of 3 for one record longer than it lasts
+    assert peak.omega_of_half(steady) == pytest.approx(104 / 103, rel=0.02)
+    falls = with_stress(*range(1, 61), *[30] * 10, *range(61, 101), *[100] * 3, *[40] * 9)
+    assert peak.greatest_fall(falls) == pytest.approx(0.28)  # from the third last record before the fall, 58
+    slow = with_stress(*range(1, 101), *range(100, 40, -1), *[1] * 6)
+    assert peak.omega_of_half(slow) == pytest.approx(1.5, rel=0.01)
+    ends_early = make_run(1e8, end=0.9e8)
+    assert np.isnan(peak.greatest_fall(ends_early)) and np.isnan(peak.omega_of_half(ends_early))
+
+
+def test_rows_of_the_peak(table):
+    fragments = pd.DataFrame(
+        {"type": "BA", "material": "q-S", "a_eff": 1e-7, "grain": np.repeat(np.arange(8), 4), "half": True}
+    )
+    steady, slow = with_stress(*range(1, 101), *[40] * 9), with_stress(*range(1, 101), *range(100, 40, -1), *[1] * 6)
+    for small, quarter, runs in ((True, True, [steady] * 3), (False, False, [slow] * 3)):
+        pieces = fragments.assign(mass_fraction=np.tile([0.05, 0.02, 0.04, 0.03 if small else 0.4], 8))
+        found = peak.rows(
+            SimpleNamespace(
+                course={"prescribed": runs},
+                tables={"prescribed": table.assign(mass_fraction_disr=0.75 if quarter else 0.9)},
+                fragments={"prescribed": pieces},
+            )
+        )
+        assert holds(found, "abrupt") is small and holds(found, "peak_mass") is quarter
+        assert holds(found, "stress_drop") is small and holds(found, "stress_rise") is True
+
+
+def test_largest_piece_of_a_grain_is_one_of_its_first_half(table):
+    late = pd.DataFrame(
+        {"type": "BA", "grain": [0, 0, 1], "half": [True, False, True], "mass_fraction": [0.1, 0.4, 0.2]}
+    )
+    assert peak._largest_pieces(late)["mass_fraction"].tolist() == [0.1, 0.2]
+
+
+def test_gain_of_contacts_is_compared_with_the_other_type_that_gains_most(table):
+    gain = table["type"].map({"BA": 1.2, "BAM1": 1.0, "BAM2": 1.1})
+    scatter = 1 + 1e-3 * np.random.default_rng(0).normal(size=len(table))
+    less = course._gain_most(table.assign(n_contacts_max=table["n_contacts"] * gain * scatter), None)
+    assert less.text.startswith("-0.0996") and less.holds is False
+    gain[table["type"] == "BAM2"] = 1.3
+    assert course._gain_most(table.assign(n_contacts_max=table["n_contacts"] * gain * scatter), None).holds is True
+
+
+def test_gains_of_mass_are_counted_among_its_changes():
+    run = make_run(1e8, end=2e8)
+    mass = np.full(run.sizes["record"], 1.0)
+    mass[10:], mass[20:], mass[30:] = 0.5, 0.6, 0.1
+    run = run.assign(mass=("record", mass * run.attrs["initial_mass"]))
+    found = course._reconnects([run] * 2, None)
+    assert found.text == "0.333 (2 of 6)" and found.holds is None
+    mass[20:30] = 0.5
+    assert course._reconnects([run.assign(mass=("record", mass * run.attrs["initial_mass"]))] * 40, None).holds is True
+
+
+def test_grains_that_become_oblate_are_counted_by_pairs(table):
+    oblate, prolate = np.array([1.0, 1.4, 1.5]), np.array([1.0, 1.1, 1.5])
+    for start, end, became in ((prolate, oblate, True), (oblate, prolate, False), (oblate, oblate, False)):
+        columns = {f"axis_{axis}_{when}": shape[k] for when, shape in (("start", start), ("disr", end))
+                   for k, axis in enumerate("abc")}  # fmt: skip
+        own = table.assign(**columns)
+        own.loc[0, "axis_a_disr"] = np.nan
+        found = shapes._more_oblate(own, None)
+        assert found.holds is (True if start is end else became)  # no change is not below 0
+        assert found.text.startswith(f"{became - (start is oblate and end is prolate)} (")
+
+
+def test_scatter_of_the_porosity_is_that_within_the_cells(table):
+    rng = np.random.default_rng(1)
+    size = 0.3 * np.log(table["a_eff"] / 1e-7)  # differences of the cells are no scatter
+    start = 0.5 + size + 0.01 * rng.normal(size=len(table))
+    for end, more in ((0.03, True), (0.003, False)):
+        own = table.assign(porosity_start=start, porosity_disr=0.5 + end * rng.normal(size=len(table)))
+        assert shapes._variation(own, None).holds is more
+
+
+def test_types_are_compared_in_geometric_means(table):
+    factor = table["type"].map({"BA": 0.5, "BAM1": 1.0, "BAM2": 2.0})
+    scatter = np.exp(0.01 * np.random.default_rng(2).normal(size=len(table)))
+    own = table.assign(omega_disr=1e8 * factor * scatter)
+    found = disrupted._easier(own, None)
+    assert found.holds is True and "(below 1 in 6 of 6 cells)" in found.text
+    assert float(found.text.split()[1]) == pytest.approx(0.5, rel=0.02)
+    assert disrupted._easier(own.assign(omega_disr=1e8 / factor * scatter), None).holds is False
+
+
+def test_longest_viscous_time_is_set_beside_the_shortest_of_the_same_grain():
+    level = np.repeat(np.exp(np.random.default_rng(3).normal(size=8)), 2)
+    times = np.tile([1e-12, 9e-12], 8)
+    table = pd.DataFrame({"type": "BA", "material": "a-C", "a_eff": 1e-7, "seed": np.repeat(range(8), 2)})
+    table = table.assign(viscous_time=times, omega_disr=level * (1 + 1e11 * times), omega_mass_75=level)
+    found = disrupted._viscous_rise(table, None)
+    assert found.holds is True and found.text.startswith("BA 1.73") and "of 100 nm" in found.text
+    assert disrupted._viscous_rise(table.assign(omega_disr=level / times), None).holds is False
+
+
+def test_porosity_is_compared_with_that_of_equal_monomers_of_the_same_number():
+    rng = np.random.default_rng(4)
+    rows = [
+        {"study": "aggregates", "type": kind, "n_monomers": n, "porosity": 0.3 + 0.05 * np.log(n) + rng.normal(0, 0.01),
+         "a_eff": 1e-7, "migration": "nearest"}
+        for kind in ("BAM1", "BAM2") for n in (32, 128, 512) for _ in range(30)
+    ]  # fmt: skip
+    for less in (0.1, -0.1):
+        own = [
+            {"study": "grains", "type": kind, "n_monomers": n, "porosity": 0.3 + 0.05 * np.log(n) - less, "a_eff": size,
+             "migration": "nearest"}
+            for kind in ("BAM1", "BAM2") for size, n in ((2e-7, 120), (3.5e-7, 640), (5e-7, 2000)) for _ in range(20)
+        ]  # fmt: skip
+        answer = structure._compact(pd.DataFrame(rows + own)).answers[""]
+        assert answer.holds is (less > 0) and "(350 nm)" in answer.text and "(500 nm)" not in answer.text
+    assert structure._compact(None).answers == {}
+
+
+def test_depth_and_fractal_dimension_are_compared_by_rank():
+    radius = np.sort(np.random.default_rng(5).uniform(10e-9, 60e-9, 60))
+    for far, deeper in ((np.arange(60.0), True), (np.arange(60.0, 0, -1), False)):
+        place = np.zeros((60, 3))
+        place[:, 0] = far * np.where(np.arange(60) % 2, 1, -1)  # to both sides of the centre of mass by turns
+        grain = SimpleNamespace(position=place, radius=radius, type="BAM1", n_monomers=60)
+        assert structure._deeper([grain] * 3).answers[""].holds is deeper
+    assert structure._deeper([]).answers == {}
+    x = np.random.default_rng(6).normal(size=200)
+    assert structure._rank_correlation(x, np.exp(x)) == pytest.approx(1)
+    assert structure._rank_correlation(x, -(x**3)) == pytest.approx(-1)
+    table = make_table(sizes=(100e-9, 200e-9, 300e-9), seeds=40).assign(axis_a=1.0)
+    rng = np.random.default_rng(7)
+    free = table.assign(axis_c=rng.uniform(1, 2, len(table)), fractal_dimension=rng.uniform(2, 3, len(table)))
+    assert structure._fractal_shape(free).answers[""].holds is True
+    bound = free.assign(fractal_dimension=free["axis_c"] + table["a_eff"] * 1e9)
+    assert structure._fractal_shape(bound).answers[""].holds is False
