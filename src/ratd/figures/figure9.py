@@ -7,6 +7,7 @@ from matplotlib.lines import Line2D
 from ratd.ensemble import cell_statistics, size_key
 from ratd.errors import InputError
 from ratd.figures.style import (
+    GREY,
     TWO_COLUMNS,
     drive_of,
     drive_text,
@@ -23,7 +24,7 @@ from ratd.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.units import NM, PS
 
 AXIS = {
-    "xi_c": (NM, r"critical rolling displacement $\xi_\mathrm{crit}$ [nm]", "{:g} nm"),
+    "xi_c": (NM, r"critical rolling displacement $\xi_\mathrm{c}$ [nm]", "{:g} nm"),
     "T_vis": (PS, r"viscous time $T_\mathrm{vis}$ [ps]", "{:g} ps"),
 }
 """Parameter -> unit of its axis [SI], label, text of a value."""
@@ -121,6 +122,8 @@ def _against_value(axes, table, parameter, style, lines):
     """Ratios of the marks to those of the same grain with the paper's value, against the value of the parameter."""
     unit, label, _ = AXIS[parameter]
     axes.axhline(1.0, color="black", lw=0.6)
+    for value in table[PARAMETERS[parameter]].unique():
+        axes.axvline(value / unit, color=GREY, lw=0.4, zorder=0)
     logarithm = parameter == "xi_c"  # its values double
     steps = np.array([-1.5, -0.5, 0.5, 1.5])[: len(MARKS) * len(style)]
     place = iter(steps - steps.mean())

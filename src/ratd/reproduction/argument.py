@@ -120,17 +120,30 @@ def _of_strength(data):
     """A paragraph: the omega of the tensile strength beside the consistent model and Table 3."""
     if "prescribed" not in data.tables:
         return []
-    words = []
-    for kind, sizes, part in by_type_and_size(ratios(data.tables["prescribed"], data.plan.materials)):
-        strength = part["strength_over_bound"] / part["found_over_bound"]
-        printed = part["strength_over_bound"] / part["printed_over_bound"]
-        cell = cell_of(part)
-        medians = [number(median_of(values, cell=cell)["median"]) for values in (strength, printed)]
-        words.append(f"{kind} {sizes} {medians[0]} and {medians[1]}")
+    words = [f"{kind} {sizes} {' and '.join(map(number, medians))}" for kind, sizes, medians in over_strength(data)]
     return [
         "The omega of the tensile strength is so many times the omega_disr of the drive `prescribed`, and of Eq. 33 "
         f"with Table 3, in the medians of the same grains: {'; '.join(words)}."
     ]
+
+
+def over_strength(data):
+    """omega of the tensile strength over omega_disr of the drive `prescribed`, and over Eq. 33 with Table 3.
+
+    Parameters
+    ----------
+    data : ratd.reproduction.data.Data
+
+    Returns
+    -------
+    list of tuple
+        Type, sizes as text, and the two medians over the same grains, all cells counting alike.
+    """
+    found = []
+    for kind, sizes, part in by_type_and_size(ratios(data.tables["prescribed"], data.plan.materials)):
+        over = [part["strength_over_bound"] / part[name] for name in ("found_over_bound", "printed_over_bound")]
+        found.append((kind, sizes, [median_of(values, cell=cell_of(part))["median"] for values in over]))
+    return found
 
 
 def sideways(data):
@@ -180,8 +193,10 @@ def _above_bound(data):
             f" Above the firm bound it leaves in {len(firm)} of {len(known)} grains, {gain} of them with new contacts."
         )
     return [
-        "In the drive `prescribed` the first mass leaves below the cut bound, above it in "
-        f"{', '.join(counts)} grains.{words if len(above) else ''} omega_disr is the peak of the stress of the "
+        "In the drive `prescribed` the first mass leaves below the cut bound but in "
+        f"{', '.join(counts)} grains.{words if len(above) else ''} The bound lets all contacts of a cut bear F_C at "
+        "once, in a grain that keeps its shape; how much unequal loads and stretching each take off was not separated. "
+        "omega_disr is the peak of the stress of the "
         "largest fragment: where part of the mass has left by then, as in large BA grains, it belongs to a remnant, "
         "and may lie above the cut bound of the whole grain."
     ]

@@ -6,12 +6,13 @@ CAPTIONS = {
     "bound": (
         "Angular velocities over the cut bound of the same grain, against size, a panel a type. Diamonds: Eq. 33 "
         "with A and alpha as printed in Table 3; triangles upside down: where the mean tension at the mid-plane is the "
-        "tensile strength of Tatsuuma et al. (2019); upright triangles: the firm bound; all of these are those of all "
+        "tensile strength of Tatsuuma et al. (2019); open triangles: the firm bound; all of these are those of all "
         "grown grains. Circles and squares: omega_disr of the grains that the drives prescribed and literal spun up. "
         "Each is a median over all materials, which have the same weight; bars hold the middle two thirds of the "
         "grains. The dashed line is the cut bound itself.\n\n"
         "What to see: which points keep below the firm bound, above which the contacts cannot hold the grain as it "
-        "stands, which lie far above it, and how their distance grows with size."
+        "stands, which lie far above it, and how their distance grows with size. Circles of BA above it belong to "
+        "remnants, which hold more than the whole grain."
     ),
     "lammps": (
         "Top left: the normal force of two spheres that are drawn apart, over the pull-off force F_C, against their "

@@ -11,6 +11,7 @@ from ratd.reproduction import course, peak, shapes
 from ratd.reproduction.bounds import printed_slopes, sizes_of, table3_omega
 from ratd.reproduction.course import BAM, LEVEL
 from ratd.reproduction.paper import PRINTED
+from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
     ROUGHLY,
     Answer,
@@ -119,13 +120,14 @@ def _omega(data):
         return Answer(told_slopes(found), holds=all_of(verdicts))
 
     materials = data.plan.materials
+    fixed = " The level of literal was fixed on Fig. 4." if is_calibrated(data) else ""
     known = table3_omega(data.grown, materials).dropna()
     itself = (
         f" Eq. 33 with Table 3 itself spans {between(known.min(), known.max())} for our grains." if len(known) else ""
     )
     fit = told_slopes(printed_slopes(data.grown, materials))
     return [
-        drive_rows("order", data.tables, means, LEVEL),
+        drive_rows("order", data.tables, means, LEVEL + fixed),
         drive_rows("easier", data.tables, _easier, "Geometric means of all sizes."),
         drive_rows("range", data.tables, spread, LEVEL + itself),
         drive_rows(

@@ -22,12 +22,13 @@ from ratd.fragmentation import STAGES
 from ratd.reproduction.bounds import ratios
 from ratd.statistics import median_of, quantiles
 
+# not the colours of the types
 DRIVE_LOOK = {
-    "prescribed": {"color": "#0072B2", "marker": "o"},
-    "literal": {"color": "#D55E00", "marker": "s"},
+    "prescribed": {"color": "#CC79A7", "marker": "o"},
+    "literal": {"color": "#56B4E9", "marker": "s"},
 }
 PRINTED_LOOK = {"color": "black", "marker": "D"}
-FIRM_LOOK = {"color": "#009E73", "marker": "^"}
+FIRM_LOOK = {"color": "black", "marker": "^", "mfc": "white", "mew": 0.7}
 STRENGTH_LOOK = {"color": GREY, "marker": "v"}
 SHARES = {
     "the lost mass": {"lw": 1.3, "ms": 3.5},

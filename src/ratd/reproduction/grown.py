@@ -63,7 +63,7 @@ def _deviation(data):
 
 def _porosity(table):
     reason = (
-        f"Means of the sizes, the least one of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a "
+        f"Mean of each size; the least is that of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a "
         f"solid sphere P = {printed_porosity(0.0):.2f}."
     )
     result = []

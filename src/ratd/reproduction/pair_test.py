@@ -59,13 +59,14 @@ def in_short(data):
     if ends is None or data.calibration is None:
         return []
     ends = with_share_and_step(ends, data.plan.materials)
-    over = explicit_over(ends, data.calibration["calibrated"].item())
+    cells = _row("", "", ends, explicit_over(ends, data.calibration["calibrated"].item()))[2:]
+    told = " and ".join(f"{cell} (of {size})" for cell, size in zip(cells, _sizes(ends), strict=True))
     return [
         f"**Pairs of monomers (Fig. 10)**, the paper's own test, part within {PRINTED['pairs'].text} of Eq. 35 in the "
-        "paper, and in the consistent model where nothing damps them. Under the printed equations small and large ones "
-        f"would part at {between(over.min(), over.max())} times the omega of the consistent model with the calibrated "
-        f"d omega/dt, and at {number((1 / ends['share']).mean())} times with an exact Coriolis term: Fig. 10 does not "
-        "follow from the printed equations."
+        "paper, and in the consistent model where nothing damps them. Under the printed equations they would part at "
+        f"{told} times the omega of the same pair in the consistent model with the calibrated d omega/dt, and at "
+        f"{number((1 / ends['share']).mean())} times with an exact Coriolis term: Fig. 10 does not follow from the "
+        "printed equations."
     ]
 
 

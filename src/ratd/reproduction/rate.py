@@ -36,7 +36,7 @@ def calibration_section(data):
             f"omega ~ (d omega/dt)^p with p = {with_error(value['exponent'], value['exponent_error'])} over "
             f"{plural(int(found.sizes['entry']), 'run')} of {plural(runs['seed'].nunique(), 'grain')}; the errors are "
             "those of leaving out one grain after the other. The onset is the loss of 1 % of the mass. With p = 1/3, "
-            "what the energy fed in would give by itself, it is "
+            "the limit of a threshold far above q, it is "
             f"{number(found['calibrated_by_law'].item())} rad/s² from the slowest run of each grain, "
             "among equally slow ones that with the shortest step. "
             f"{_rates(runs, found['calibrated'].item())}Besides the "
@@ -125,7 +125,8 @@ def _drag_time(data):
         f"{number(onset)} rad/s would be reached after {number(steps)} printed steps, so that the figures can hardly "
         "have been made with it. Under the printed equations it is no detail: at that rate a solid grain of the cell "
         f"of Fig. 4 would part at {with_error(solid['median'], solid['error'])} rad/s, "
-        f"{number(solid['median'] / onset)} times the printed onset"
+        f"{number(solid['median'] / onset)} times the printed onset; this is the omega of the frame, "
+        "and the lag turns the grain backwards, faster than that"
     )
     calibrated = np.nan if data.calibration is None else data.calibration["calibrated"].item()
     if np.isfinite(calibrated):

@@ -28,9 +28,10 @@ Numbers and figures were written by
 
 from the files in `docs/reproduction/data` and, for the checks of the model, in `docs/validation/data`, where READMEs
 say how these were made; no number but the printed ones and the rules of “holds if” was typed by hand. "±" is a standard
-error; that of a median over several cells takes in how much the cells differ, though none of them is missing, and is an
-upper limit for that. A range in brackets behind a value is that from the 16th to the 84th percentile of the grains,
-called the middle two thirds, and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
+error; that of a median over several cells counts the scatter between cells as if they were drawn at random, and so is
+rather too large. A range in brackets behind a value is that from the 16th to the 84th percentile of the grains, called
+the middle two thirds; from the least to the greatest where it says "of" how many, or names single grains; and a
+{confidence:g} % interval where the text says so. Angular velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 
@@ -50,15 +51,17 @@ What the printed equations do is shown here. What the authors' code did is not k
 - a_eff, the size: radius of the sphere of the same volume of matter. a, b, c: semi-axes of a grain, a < b < c; oblate
   means b/a > c/b. phi: filling factor. P = 1 - phi: porosity.
 - omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks, as long as that holds
-  half of the mass of the grain; the stress is a running median over {window} records. Other marks are the first loss of
-  mass, and the loss of a quarter of it.
+  half of the mass of the grain. The total stress (Eq. 32) is the sum over all contacts of |F_N|/(pi r²), r being the
+  radius of the contact, which is no stress of the material; it is a running median over {window} records. Other marks
+  are the first loss of mass, and the loss of a quarter of it.
 - Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3;
   N_con is the number of contacts and <a_mon> the mean radius of the monomers. With the printed Table 3 it is taken at
   the printed <a_mon> = 20 nm; with that of our grains, which is greater, it would be lower (Table 3).
 - F_C: the greatest pull of a contact. Cut bound: the omega above which the weakest cut through the contacts of a grain,
   each holding F_C, gives way; firm bound: the same with all that contacts bear, sideways and pushed as well (What the
   contacts can hold).
-- dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}.
+- dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}. The drive `prescribed`
+  has f = {prescribed_step:g}.
 - epsilon = (d omega/dt)/omega², how fast the drive `prescribed` raises omega; {epsilon} from {first:g} of the cut bound
   on, faster below.
 - d omega/dt: how fast the drive `literal` raises omega. What the figures of the paper were made with is not known (One
@@ -96,11 +99,11 @@ def report(data, pictures, captions=None):
         "One row for each number or finding that the paper quotes; Tables 1, 2 and 3 and Fig. 1 have tables of their "
         "own below. “ratio” is ours over printed, of both ends for a range. “holds” says whether ours fulfils the rule "
         "under “holds if”: within a quarter is a factor of 1.25 either way, to a tenth is 10 % beyond either end. "
-        "Where an error is given, yes and no need two errors; values without one (extremes, ranges, the cell of Fig. "
-        "4) are compared as they stand. A dash: not decided, no rule, or used to fix the drive. Left out are Fig. 3, a "
-        "sketch; what the paper says of its own runs (their energy error, number of steps and Euler forces) and of "
-        "other work; and what the data do not tell: the fractal dimension at disruption, what a grain does where the "
-        "spin-up stops, and Fig. 9 for q-S and co-S.",
+        "Where an error is given, yes and no need two errors; extremes, ranges and the cell of Fig. 4 have none and "
+        "are compared as they stand. A dash: not decided (also a mean, median or slope of too few grains for an "
+        "error), no rule, or used to fix the drive. Left out are Fig. 3, a sketch; what the paper says of its own runs "
+        "(their energy error, number of steps and Euler forces) and of other work; and what the data do not tell: the "
+        "fractal dimension at disruption, what a grain does where the spin-up stops, and Fig. 9 for q-S and co-S.",
         *_printed_numbers(rows, drives),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
@@ -120,6 +123,7 @@ def _introduction(data):
     return INTRODUCTION.format(
         confidence=100 * config["ensemble"]["confidence"],
         step=PRINTED_STEP,
+        prescribed_step=data.plan.spin_up_of("prescribed")["timestep_factor"],
         window=MEDIAN_WINDOW,
         epsilon=data.plan.pace("prescribed").removeprefix("epsilon = "),
         first=FIRST_LOSS,

@@ -43,8 +43,8 @@ def _compact(table):
             verdicts.append(lies_in(*value, high=0.0))
         parts.append(f"{kind} {', '.join(told)}")
     reason = (
-        "Grains of Fig. 1 against a parabola in ln N_mon through aggregates of equal monomers (docs/validation.md, "
-        "Growth), as far as these go; all migrate to the nearest place."
+        "Grains like those of Fig. 1, but not of the ensemble, against a parabola in ln N_mon through aggregates of "
+        "equal monomers (docs/validation.md, Growth), as far as these go; all migrate to the nearest place."
     )
     return Row("compact", {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}, reason)
 

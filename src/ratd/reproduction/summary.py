@@ -3,12 +3,13 @@
 import numpy as np
 import pandas as pd
 
+from ratd import formula_table
 from ratd.beyond import SPLIT, slopes
 from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown, pair_test
-from ratd.reproduction.argument import lammps_over_ratd, printed_above, ratios_to_ratd
+from ratd.reproduction.argument import lammps_over_ratd, over_strength, printed_above, ratios_to_ratd
 from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes, sizes_of, split_sizes
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
@@ -16,10 +17,12 @@ from ratd.reproduction.rate import calibrated_grains, is_calibrated, printed_rat
 from ratd.reproduction.text import NOTHING, all_of, between, lies_in, number, with_error
 from ratd.statistics import median_of
 from ratd.units import NM
-from ratd.validation.show import lammps
+from ratd.validation.show import lammps, literal
 from ratd.validation.show.convergence import large_shifts, percent
 
 OF_DRIVE, PRINTED_FIT = "omega_disr, drive `{}`", "Eq. 33 with the printed Table 3"
+FAR_BELOW = 0.9
+"""omega of the first loss over omega_disr below which most of a type lose mass well before."""
 NEARLY_ALL = 0.9
 """Part of all grains that is called so."""
 
@@ -39,10 +42,10 @@ def summary(data, rows):
     """
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
     grown_ratios = ratios(data.grown, data.plan.materials)
-    lines = [_answer(grown_ratios)] if len(tables) > 1 else []
+    lines = [_answer(data, tables, grown_ratios)] if len(tables) > 1 else []
     lines += [_bound(grown_ratios), *_lammps(data), *pair_test.in_short(data)]
     for drive, table in tables.items():
-        lines.append(_level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive))
+        lines.append(_level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive) + _before(table))
     calibrated = calibrated_grains(data)
     if calibrated is not None and calibrated["printed_over_found"].notna().any():
         name = (
@@ -52,11 +55,18 @@ def summary(data, rows):
         lines.append(_level(name, calibrated))
     lines += _spin_up_rate(data)
     lines += [_prediction(drive, data.predictions[drive]["size"]) for drive in tables]
-    lines += [*_table3(data), *_verdicts(rows, list(tables)), _composition(), *_grains(data)]
+    lines += [
+        *_strength(data),
+        *_formulae(data),
+        *_table3(data),
+        *_verdicts(rows, list(tables)),
+        _composition(),
+        *_grains(data),
+    ]
     return "\n\n".join(["\n".join(f"- {line}" for line in lines if line), _flattening(data)])
 
 
-def _answer(grown_ratios):
+def _answer(data, tables, grown_ratios):
     """What it comes to, for someone who reads no further."""
     count, known, _ = printed_above(grown_ratios, "printed_over_firm")
     held = (
@@ -64,13 +74,18 @@ def _answer(grown_ratios):
         if count > NEARLY_ALL * known
         else ""
     )
+    level = {drive: number(_over_printed(table)["median"]) for drive, table in tables.items()}
+    study = data.study("literal")
+    exact = "" if study is None else f", {between(*literal.exact_over_consistent(study))} times in small ones"
     return (
         "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart well below the printed "
-        f"omega_disr, and the farther below it the larger it is{held}. Another code lets small grains part where this "
-        "one does. The equations as printed (`literal`) have no torque that could turn the grain: at which omega it "
-        "comes apart depends on d omega/dt and the time step. With d omega/dt fixed on Fig. 4 the level is that of the "
-        "paper in that cell by construction; in the others it is as far from it as stands below, and falls less with "
-        "size than Table 3."
+        f"omega_disr, at {level['prescribed']} times it in the median, and the farther below it the larger it is"
+        f"{held}. Another code lets small grains part where this one does. The equations as printed (`literal`) have "
+        "no torque that could turn the grain. With the Coriolis force half a step late, as assumed here, its "
+        "omega_disr depends on d omega/dt and on the time step; with it exact, grains part only far above the omega "
+        f"of the consistent model{exact}. With it late and d omega/dt fixed on Fig. 4, omega_disr lies at "
+        f"{level['literal']} times the printed one in the median, the level of the cell of Fig. 4 by construction, and "
+        "falls less with size than Table 3."
     )
 
 
@@ -120,16 +135,13 @@ def _fixed(data, drive):
 def _level(name, table):
     """omega_disr over Eq. 33 with the printed Table 3, of all grains and by type and size."""
 
-    def over(part):
-        return median_of(1 / part["printed_over_found"], cell=cell_of(part))
-
-    found = over(table)
+    found = _over_printed(table)
     sizes, shown = size_key(table["a_eff"]), shown_sizes(table)
-    sides = ", ".join(f"{sizes_of(part)} {number(over(part)['median'])}" for part in split_sizes(table))
+    sides = ", ".join(f"{sizes_of(part)} {number(_over_printed(part)['median'])}" for part in split_sizes(table))
     own_radius = np.sqrt(table["mean_monomer_radius"] / PAPER_MEAN_RADIUS) / table["printed_over_found"]
     own = median_of(own_radius, cell=cell_of(table))["median"]
     by_type = [
-        f"{kind} {' → '.join(number(over(part[sizes[part.index] == size])['median']) for size in shown)}"
+        f"{kind} {' → '.join(number(_over_printed(part[sizes[part.index] == size])['median']) for size in shown)}"
         for kind, part in table.groupby("type", sort=False)
     ]
     return (
@@ -138,6 +150,31 @@ def _level(name, table):
         f"{sides}), and at {', '.join(f'{size * PM / NM:g}' for size in shown)} nm {', '.join(by_type)}. With the "
         f"grains' own mean radius for <a_mon> in Eq. 33 it is {number(own)} times."
     )
+
+
+def _over_printed(part):
+    """omega_disr over Eq. 33 with the printed Table 3, see `ratd.statistics.median_of`; all cells count alike."""
+    return median_of(1 / part["printed_over_found"], cell=cell_of(part))
+
+
+def _before(table):
+    """Sentences: how few the largest grains are, and where large ones lose their first mass far below omega_disr."""
+    large = split_sizes(table)[-1]
+    largest = table[size_key(table["a_eff"]) == size_key(table["a_eff"]).max()]
+    ratio = large["omega_first_loss"] / large["omega_disr"]
+    medians = {
+        kind: median_of(ratio[own.index], cell=cell_of(own))["median"]
+        for kind, own in large.groupby("type", sort=False)
+    }
+    far = [f"{kind} at {number(median)}" for kind, median in medians.items() if median < FAR_BELOW]
+    counts = ", ".join(f"{len(own)} {kind}" for kind, own in largest.groupby("type", sort=False))
+    words = f" The values of {sizes_of(largest)} are medians of {counts} grains."
+    if far:
+        words += (
+            f" The first mass leaves grains of {sizes_of(large)} far below omega_disr, {', '.join(far)} times it: "
+            "there omega_disr is that of a remnant."
+        )
+    return words
 
 
 def _bound(table):
@@ -159,11 +196,38 @@ def _lammps(data):
     found, ratio = lammps_over_ratd(thresholds), pd.Series(ratios_to_ratd(thresholds), dtype=float)
     grains = table[table["study"] == "rotation"].drop_duplicates(["type", "a_eff", "seed"])
     return [
-        "**LAMMPS**, an independent code, agrees to about a step of the omega that were tried: it lets the same grains "
-        f"come apart at {with_error(found['median'], found['error'])} times the omega of this one (median of "
-        f"{plural(found['n'], 'threshold')} of {plural(len(grains), 'grain')} of up to "
-        f"{int(grains['n_monomers'].max())} monomers; single ones {between(ratio.min(), ratio.max())}). Larger grains, "
-        "for which print and model differ most, were not tried: LAMMPS is too slow for them."
+        "**LAMMPS**, an independent code, agrees in the median to about a step of the omega that were tried: it lets "
+        f"the same grains come apart at {with_error(found['median'], found['error'])} times the omega of this one "
+        f"(median of {plural(found['n'], 'threshold')} of {plural(len(grains), 'grain')} of up to "
+        f"{int(grains['n_monomers'].max())} monomers; single ones {between(ratio.min(), ratio.max())}, "
+        f"{int((np.abs(ratio - 1) > lammps.GOAL).sum())} of them farther off than {100 * lammps.GOAL:g} %). Larger "
+        "grains, for which print and model differ most, were not tried: LAMMPS is too slow for them."
+    ]
+
+
+def _strength(data):
+    """The tensile strength beside the consistent model and Table 3."""
+    if "prescribed" not in data.tables:
+        return []
+    found = [values for *_, values in over_strength(data)]
+    model, printed = ([values[k] for values in found] for k in (0, 1))
+    return [
+        "**Tensile strength** (Tatsuuma et al. 2019): its omega is "
+        f"{between(min(model), max(model))} times the omega_disr of the drive `prescribed` and "
+        f"{between(min(printed), max(printed))} times Eq. 33 with Table 3, in medians of types and sizes."
+    ]
+
+
+def _formulae(data):
+    """How much single formulae as printed change."""
+    table = data.formulae
+    if table is None:
+        return []
+    medians = table[table["formula"] != formula_table.OWN].groupby(["formula", "type"])["omega_disr_ratio"].median()
+    return [
+        "**Each printed formula alone** moves the median omega_disr of a type to "
+        f"{between(medians.min(), medians.max())} times that of the consistent model, in grains of "
+        f"{sizes_of(table)}; larger ones were not tried."
     ]
 
 
@@ -174,8 +238,8 @@ def _spin_up_rate(data):
         return []
     parts = [f"{kind} of {size:g} nm {percent(shift)} % ({plural(shift['n'], 'grain')})" for kind, size, shift in found]
     return [
-        "**Spin-up rate, drive `prescribed`**: omega_disr lies above that of an infinitely slow spin-up, in large "
-        f"grains that were tried by {', '.join(parts)}; of smaller ones docs/validation.md (Convergence) tells. That "
+        "**Spin-up rate, drive `prescribed`**: omega_disr lies above that of an infinitely slow spin-up, in the large "
+        f"grains that were tried: {', '.join(parts)}; of smaller ones docs/validation.md (Convergence) tells. That "
         "is in no ± of this document."
     ]
 

@@ -16,10 +16,12 @@ def table3_section(data):
         "Least squares of ln omega_disr over single grains, all sizes with the same weight; in brackets the bootstrap "
         f"interval of {100 * data.plan.config['ensemble']['confidence']:g} %. <a_mon> is read as the printed 20 nm and "
         "as the mean radius of each grain's own monomers: the choice moves A, and hardly alpha. A is the value at "
-        "N_con phi = 1, far from any grain, and moves against alpha: what can be compared is Eq. 33 with the fitted "
-        f"numbers over Eq. 33 with the printed ones, given at {sizes} nm for the geometric mean of N_con phi of the "
-        "grown grains there. Both have the <a_mon> that the table names; with the own mean radius, the greater one, "
-        "the printed Eq. 33 is lower as well. Scatter: standard deviation of ln omega_disr about the fit."
+        "N_con phi = 1, far from any grain, and moves against alpha. Eq. 33 fixes the power -1 of a_eff, so that alpha "
+        "takes up the rest of the fall with size, and is negative where omega_disr falls more steeply. What can be "
+        f"compared is Eq. 33 with the fitted numbers over Eq. 33 with the printed ones, given at {sizes} nm for the "
+        "geometric mean of N_con phi of the grown grains there. Both have the <a_mon> that the table names; with the "
+        "own mean radius, the greater one, the printed Eq. 33 is lower as well. Scatter: standard deviation of "
+        "ln omega_disr about the fit."
     ]
     for drive, fit in data.fits.items():
         for reading in fit["mean_radius"].values:

@@ -70,6 +70,25 @@ def _rate_exponent(used, mark):
     return median_of([power for power, _ in exponents(used, mark)])
 
 
+def exact_over_consistent(table):
+    """omega of the first loss with the exact Coriolis term over that in the consistent model: least and greatest.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.literal.COLUMNS`.
+
+    Returns
+    -------
+    tuple of float
+        Of the medians of each type and size, over the runs that lost mass.
+    """
+    exact = with_reference(table[table["coriolis"] == "exact"])
+    over = exact["omega_first_loss"] / exact["true_omega_first_loss"]
+    medians = over.groupby([exact["type"], exact["a_eff"]]).median()
+    return float(medians.min()), float(medians.max())
+
+
 def exponents(rows, column):
     """Exponents of omega in d omega/dt and in dt, fitted within each grain; list of pairs."""
     found = []
