@@ -530,36 +530,25 @@ def test_the_folder_says_what_it_holds_and_holds_nothing_else(tmp_path, theory_p
     pieces, _, paths = theory_pieces
     folder = tmp_path / "data"
     kept.collect(folder, "theory", paths, pieces)
-    for name in ("old.nc", "theory.md", "theory.png"):
-        (folder / name).write_text("not asked for, or there in a better form")
+    (folder / "old.nc").write_text("not asked for")
     kept.finish(folder, {"theory": pieces}, "make it")
     text = (folder / "README.md").read_text()
     assert "make it" in text and "| `theory.nc` | 2 of 2 | 2 | a; b |" in text and str(tmp_path) not in text
     assert {path.name for path in folder.iterdir()} == {"README.md", "theory.nc"}
 
 
-def test_an_older_section_stays_until_its_table_is_whole(tmp_path, theory_pieces):
+def test_the_document_needs_whole_tables(tmp_path, theory_pieces):
     pieces, rows, paths = theory_pieces
     folder, checks = tmp_path / "data", {"theory": pieces}
     kept.collect(folder, "theory", paths[:1], pieces)
-    with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
-        report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
-    words, picture = kept.older_section(folder, "theory")
-    words.write_text("## Old\n\nwords\n")
-    with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
-        report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
-    picture.write_bytes(b"")
     kept.finish(folder, checks, "make it")
-    readme = (folder / "README.md").read_text()
-    assert "| `theory.nc` | 1 of 2 | 1 | b |" in readme and "| `theory.md` | – | – | – |" in readme
-    text = report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
-    assert "make it" in text and text.endswith("## Old\n\nwords\n\n![theory](pictures/theory.png)\n")
-    assert "under Old: an older run" in text
+    assert "| `theory.nc` | 1 of 2 | 1 | b |" in (folder / "README.md").read_text()
+    with pytest.raises(ratd.InputError, match="lacks the table of theory as"):
+        report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
     kept.collect(folder, "theory", paths[1:], pieces)
-    kept.finish(folder, checks, "make it")
     text = report(folder, kept.whole_tables(folder, checks), "pictures", "make it")
+    assert "make it" in text
     assert text.endswith(section("theory", show_theory.tell(pd.DataFrame(rows)), "pictures/theory.png"))
-    assert "older run" not in text and not words.exists() and not picture.exists()
 
 
 def test_the_committed_document_says_what_its_tables_give(monkeypatch):

@@ -1,12 +1,11 @@
 """Write docs/validation.md and draw its figures."""
 
-import shutil
 from pathlib import Path
 
 from ratd import io
 from ratd.figures.style import save
 from ratd.jobs import Job
-from ratd.validation.data import older_section, whole_tables
+from ratd.validation.data import whole_tables
 from ratd.validation.show.report import SHOWN, report
 
 with Job(snakemake) as job:
@@ -14,9 +13,5 @@ with Job(snakemake) as job:
     folder, tables = settings["folder"], whole_tables(settings["folder"], settings["checks"])
     text = report(folder, tables, Path(output.figures[0]).parent.name, settings["command"])
     for (check, table), picture in zip(tables.items(), output.figures, strict=True):
-        if table is not None:
-            save(SHOWN[check].draw(table), picture)
-        else:
-            with io.atomic(picture) as temporary:
-                shutil.copyfile(older_section(folder, check)[1], temporary)
+        save(SHOWN[check].draw(table), picture)
     io.write_text(output.text, text)

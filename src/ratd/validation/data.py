@@ -2,8 +2,7 @@
 
 The checks take hours to compute, and what they find is small. So the tables are kept, and the document can be written
 from them at any time. A piece stays as long as the config asks for it with the same settings; the source may have
-changed since, and stands in the file. Of a check that was computed before tables were kept the folder has the section
-and the figure instead, until all of its pieces are there.
+changed since, and stands in the file.
 """
 
 import json
@@ -32,21 +31,9 @@ def table_path(folder, check):
     return str(Path(folder, f"{check}.nc"))
 
 
-def older_section(folder, check):
-    """Section of a check of which the table is not whole, as it was written once, and its figure.
-
-    Returns
-    -------
-    words, picture : pathlib.Path
-        Both are there, or they count as neither.
-    """
-    return Path(folder, f"{check}.md"), Path(folder, f"{check}.png")
-
-
 def present(folder, checks):
-    """Files from which the sections of some checks are written, as far as they are there; list of str."""
-    files = [Path(path) for check in checks for path in (table_path(folder, check), *older_section(folder, check))]
-    return [str(path) for path in files if path.is_file()]
+    """Files of some checks, as far as they are there; list of str."""
+    return [path for path in (table_path(folder, check) for check in checks) if Path(path).is_file()]
 
 
 def check_table(folder, check):
@@ -165,7 +152,7 @@ def collect(folder, check, paths, pieces):
 
 
 def finish(folder, checks, command):
-    """Remove tables that are not asked for and older sections of whole ones, and say what the folder holds.
+    """Remove tables that are not asked for, and say what the folder holds.
 
     Parameters
     ----------
@@ -179,15 +166,10 @@ def finish(folder, checks, command):
         path.unlink()
     rows = []
     for check, pieces in checks.items():
-        there = read_pieces(folder, check)
-        if is_whole(there, pieces):
-            for path in older_section(folder, check):
-                path.unlink(missing_ok=True)
-        held = there.values()
+        held = read_pieces(folder, check).values()
         cases, source = sum(piece.sizes[CASE] for piece in held), sorted({piece.attrs["code_hash"] for piece in held})
-        of_table = [f"{len(held)} of {len(pieces)}", cases, "; ".join(source)]
         for path in map(Path, present(folder, [check])):
-            cells = of_table if path.suffix == ".nc" else ["–"] * 3
+            cells = [f"{len(held)} of {len(pieces)}", cases, "; ".join(source)]
             rows.append([f"`{path.name}`", *cells, f"{path.stat().st_size / 1e3:.1f}", file_hash(path)])
     table = markdown_table(["file", "pieces", "cases", "source", "kB", "hash"], rows)
     io.write_text(Path(folder, README), TEXT.format(command=command, table=table))
@@ -203,8 +185,7 @@ from what `config/validation.yaml` asks for. `snakemake --cores 2 validation_rep
 document from these files alone. A piece of a check stays while the config asks for it with the same settings, also when
 the source has changed since; to have a check computed anew, remove its table and run the command again. Each table
 names in its attribute `pieces` its pieces one after the other: how many cases, the hash of the settings and of the
-source, and the versions that it was made with. Of a check that lacks pieces there may be a section and a figure of an
-older run; they stay in the document until it has them:
+source, and the versions that it was made with:
 
 {table}
 """

@@ -1,7 +1,6 @@
 """The report: introduction, then the sections of the checks."""
 
 from ratd.errors import InputError
-from ratd.validation.data import older_section
 from ratd.validation.show import (
     convergence,
     energy,
@@ -28,7 +27,7 @@ written by
 
 from the tables of all cases in `{data}`, where a README says how these were made. Nothing in it is typed by hand. "±"
 is a standard error; where only a range is given, it is the range over all cases.
-{older}
+
 BA, BAM1, BAM2: grains grown with none, one and two migrations of each monomer. a-C, q-S, co-S: amorphous carbon, quartz
 silicate, a mixture of silicates. omega: angular velocity in rad/s. Its marks: omega_disr, where the total stress of the
 largest fragment peaks before less than half of the mass is left; omega_first_loss, the first loss of mass;
@@ -36,11 +35,6 @@ omega_mass_75 and omega_contacts_75, the loss of a quarter of the mass and of th
 omega². f: the time step over the shortest time of the contacts (Eq. 31). Production: what config/config.yaml has. Cut
 bound: the omega at which the weakest cut through the contacts gives way, each holding its pull-off force F_C.
 `docs/model.md` says more.
-"""
-
-OLDER = """
-The exception is what is said under {headings}: an older run wrote it, whose tables were not all kept, and
-sentences that were changed since were changed there by hand as the code has them.
 """
 
 
@@ -83,21 +77,14 @@ def report(folder, tables, pictures, command):
     Raises
     ------
     InputError
-        If a check has neither a table nor an older section.
+        If a check has no table.
     """
-    sections, older = [], []
+    sections = []
     for check, table in tables.items():
-        kept = older_section(folder, check)
-        if table is not None:
-            words = SHOWN[check].tell(table)
-        elif all(path.is_file() for path in kept):
-            words = kept[0].read_text(encoding="utf-8").rstrip()
-            older.append(words.splitlines()[0].removeprefix("## "))
-        else:
+        if table is None:
             raise InputError(
                 f"{folder}: lacks the table of {check} as config/validation.yaml asks for it; allowed: tables of this "
                 "config (snakemake --cores 2 validation_data makes them)"
             )
-        sections.append(section(check, words, f"{pictures}/{check}.png"))
-    exception = OLDER.format(headings=", ".join(older)) if older else ""
-    return "\n".join([INTRODUCTION.format(data=folder, command=command, older=exception), *sections])
+        sections.append(section(check, SHOWN[check].tell(table), f"{pictures}/{check}.png"))
+    return "\n".join([INTRODUCTION.format(data=folder, command=command), *sections])
