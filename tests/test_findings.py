@@ -47,6 +47,7 @@ def test_rows_of_the_peak(table):
     fragments = pd.DataFrame(
         {"type": "BA", "material": "q-S", "a_eff": 1e-7, "grain": np.repeat(np.arange(8), 4), "half": True}
     )
+    restless = with_stress(*range(1, 61), *[30] * 10, *range(61, 101), *[40] * 9)
     steady, slow = with_stress(*range(1, 101), *[40] * 9), with_stress(*range(1, 101), *range(100, 40, -1), *[1] * 6)
     for small, quarter, runs in ((True, True, [steady] * 3), (False, False, [slow] * 3)):
         pieces = fragments.assign(mass_fraction=np.tile([0.05, 0.02, 0.04, 0.03 if small else 0.4], 8))
@@ -59,6 +60,8 @@ def test_rows_of_the_peak(table):
         )
         assert holds(found, "abrupt") is small and holds(found, "peak_mass") is quarter
         assert holds(found, "stress_drop") is small and holds(found, "stress_rise") is True
+    nothing = SimpleNamespace(course={"prescribed": [restless] * 3}, tables={}, fragments={})
+    assert holds(peak.rows(nothing), "stress_rise") is False
 
 
 def test_largest_piece_of_a_grain_is_one_of_its_first_half(table):
@@ -82,10 +85,13 @@ def test_gains_of_mass_are_counted_among_its_changes():
     mass = np.full(run.sizes["record"], 1.0)
     mass[10:], mass[20:], mass[30:] = 0.5, 0.6, 0.1
     run = run.assign(mass=("record", mass * run.attrs["initial_mass"]))
-    found = course._reconnects([run] * 2, None)
+    late, early = ({"omega_disr": run["omega"].values[k]} for k in (50, 25))
+    found = course._reconnects([(run, late)] * 2, None)
     assert found.text == "0.333 (2 of 6)" and found.holds is None
+    assert course._reconnects([(run, early)], None).text == "0.5 (1 of 2)" and course._reconnects([], None) is None
     mass[20:30] = 0.5
-    assert course._reconnects([run.assign(mass=("record", mass * run.attrs["initial_mass"]))] * 40, None).holds is True
+    calm = run.assign(mass=("record", mass * run.attrs["initial_mass"]))
+    assert course._reconnects([(calm, late)] * 40, None).holds is True
 
 
 def test_grains_that_become_oblate_are_counted_by_pairs(table):
@@ -96,7 +102,7 @@ def test_grains_that_become_oblate_are_counted_by_pairs(table):
         own = table.assign(**columns)
         own.loc[0, "axis_a_disr"] = np.nan
         found = shapes._more_oblate(own, None)
-        assert found.holds is (True if start is end else became)  # no change is not below 0
+        assert found.holds is became  # no change is none
         assert found.text.startswith(f"{became - (start is oblate and end is prolate)} (")
 
 
@@ -144,7 +150,7 @@ def test_porosity_is_compared_with_that_of_equal_monomers_of_the_same_number():
         ]  # fmt: skip
         answer = structure._compact(pd.DataFrame(rows + own)).answers[""]
         assert answer.holds is (less > 0) and "(350 nm)" in answer.text and "(500 nm)" not in answer.text
-    assert structure._compact(None).answers == {}
+    assert structure._compact(None).answers == {} and structure._compact(pd.DataFrame(own)).answers == {}
 
 
 def test_depth_and_fractal_dimension_are_compared_by_rank():
@@ -152,8 +158,9 @@ def test_depth_and_fractal_dimension_are_compared_by_rank():
     for far, deeper in ((np.arange(60.0), True), (np.arange(60.0, 0, -1), False)):
         place = np.zeros((60, 3))
         place[:, 0] = far * np.where(np.arange(60) % 2, 1, -1)  # to both sides of the centre of mass by turns
-        grain = SimpleNamespace(position=place, radius=radius, type="BAM1", n_monomers=60)
-        assert structure._deeper([grain] * 3).answers[""].holds is deeper
+        grain = SimpleNamespace(position=place, radius=radius, type="BAM1")
+        mixed = [SimpleNamespace(position=place, radius=np.roll(radius, 7 * k), type="BA") for k in range(3, 6)]
+        assert structure._deeper([grain] * 3 + mixed).answers[""].holds is deeper
     assert structure._deeper([]).answers == {}
     x = np.random.default_rng(6).normal(size=200)
     assert structure._rank_correlation(x, np.exp(x)) == pytest.approx(1)

@@ -202,7 +202,7 @@ def test_studies_are_told_from_their_columns(folder):
     data.__dict__["parameters"] = {"prescribed": grains}
     names = ["consistent", *["damping"] * 3]
     marks = {"omega_disr_ratio": [1.0, 0.5, 0.6, 0.7], "omega_mass_75_ratio": [1.0, 0.8, 0.8, 0.8]}
-    data.__dict__["formulae"] = pd.DataFrame({"formula": names, "type": "BA", **marks})
+    data.__dict__["formulae"] = pd.DataFrame({"formula": names, "type": "BA", "a_eff": 1e-7, **marks})
     values = {"omega_onset": 3e8, "calibrated": 3.4e13, "exponent": 0.32, "exponent_error": 0.01}
     values |= {"calibrated_low": 3e13, "calibrated_high": 4e13, "calibrated_by_law": 3.6e13}
     runs = {"seed": [0, 0, 0], "printed_acceleration": [1e15, 1e15, 3e13], "timestep_factor": [0.02, 0.1, 0.1]}

@@ -185,6 +185,7 @@ def at_fig_9(key, ratios):
     table["a_eff"], table["seed"] = 1e-7, np.tile(np.arange(len(ratios)), 2)
     table = table.assign(critical_rolling_displacement=2e-10, viscous_time=5e-12, omega_mass_75_ratio=1.0)
     table["omega_mass_75_ratio"] = table["omega_disr_ratio"]
+    table = table.assign(material="a-C", omega_disr=1e8, omega_mass_75=1e8)
     return pd.concat(
         [table.assign(**{column: printed.setting}), table.assign(**{column: 1.0, "omega_disr_ratio": 9.0})]
     )

@@ -103,7 +103,7 @@ _GROWN = {
     ),
     "deeper": Printed(
         "Sect. 8",
-        "rank correlation of a monomer's radius with its distance from the centre of mass, BAM",
+        "rank correlation of a monomer's radius with its distance from the centre of mass, BAM less BA",
         "“smaller monomer tend to migrate deeper”",
         "above 0, both types",
     ),
@@ -142,7 +142,7 @@ _OTHER = {
         "App. A, Fig. 10",
         "greatest error against Eq. 35, damped pairs",
         f"{100 * PAPER_ERROR:g} %",
-        "",
+        "not above it",
         PAPER_ERROR,
     ),
 }
@@ -231,7 +231,7 @@ _SPUN_UP = {
     ),
     "reconnect": Printed(
         "Sect. 7.2",
-        "share of the changes of the mass of the largest fragment by which it gains",
+        "share of the changes of the mass of the largest fragment by which it gains, up to omega_disr",
         "fragments “may rarely reconnect”",
         "below a tenth",
     ),
@@ -302,10 +302,9 @@ _SPUN_UP = {
     ),
     "match": Printed(
         "Sect. 7.4, Fig. 7",
-        "omega_disr over Eq. 33 fitted to it, mean of each type and size",
+        "distance of the mean of each size from Eq. 33 fitted to the grains, root mean square",
         "“matches very well”",
-        "all within 10 % of 1",
-        1.0,
+        "below 10 %, all types",
     ),
     "exponents": Printed(
         "Sect. 7.4",
@@ -325,7 +324,7 @@ _SPUN_UP = {
         "Sect. 7.5, Fig. 9",
         "omega at xi_c = 6.4 nm over that at 0.2 nm, a-C",
         "“small fluctuations but no clear trend”",
-        f"all within {100 * PAPER_ERROR:g} % of 1, what App. A says of them",
+        f"all within {100 * PAPER_ERROR:g} % of 1, the accuracy of App. A",
         1.0,
         setting=6.4e-9,
     ),

@@ -21,13 +21,18 @@ def rows(data):
     """Rows of the peak, list of Row."""
     return [
         drive_rows("stress_rise", data.course, _of_runs(greatest_fall, STEADY), "The cell of Fig. 4."),
-        drive_rows("stress_drop", data.course, _of_runs(omega_of_half, ABRUPT), "The cell of Fig. 4."),
+        drive_rows(
+            "stress_drop",
+            data.course,
+            _of_runs(omega_of_half, ABRUPT),
+            "The cell of Fig. 4. In part by definition: the peak is looked for before half of the mass is lost.",
+        ),
         drive_rows(
             "peak_mass",
             data.tables,
             lambda table, p: _of_types(table, lambda own: 1 - own["mass_fraction_disr"], *QUARTER),
-            "Most grains have lost little when the stress peaks, and far more than a quarter just after it: that the "
-            "two omegas are close, as another row says, tells of the abrupt break.",
+            "That the omega of a quarter lost is close to omega_disr, as another row says, does not make the masses "
+            "alike: where a grain parts at once, the stress peaks just before.",
         ),
         drive_rows(
             "abrupt",
@@ -54,14 +59,25 @@ def _of_runs(measure, limit):
 
 
 def _stress(run):
-    """Stress as `ratd.marks` takes it, and the record of its peak; None where the run has none."""
+    """Running median of the stress over the whole run, and the record of omega_disr; None where the run has none."""
     omega = float(disruption(run)["omega_disr"])
     stress = running_median(run["total_stress"].values)
     return stress, (int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))) if np.isfinite(omega) else None)
 
 
 def greatest_fall(run):
-    """Greatest fall of the stress below what it was before, up to omega_disr, over its peak; NaN without a peak."""
+    """Greatest fall of the stress below what it was before, up to omega_disr.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A spin-up run, see `ratd.spin_up`.
+
+    Returns
+    -------
+    float
+        Over the stress at omega_disr; NaN for a run without it.
+    """
     stress, peak = _stress(run)
     if peak is None:
         return np.nan
@@ -70,7 +86,18 @@ def greatest_fall(run):
 
 
 def omega_of_half(run):
-    """omega of the first record behind the peak with at most half of its stress over omega_disr; NaN without one."""
+    """omega at which the stress has fallen to half of its peak.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A spin-up run, see `ratd.spin_up`.
+
+    Returns
+    -------
+    float
+        That of the first such record behind the peak, over omega_disr; NaN where there is none.
+    """
     stress, peak = _stress(run)
     if peak is None:
         return np.nan

@@ -6,7 +6,18 @@ from ratd.beyond import is_oblate, oblate_share
 from ratd.ensemble import cell_of
 from ratd.reproduction.bounds import sizes_of, split_sizes
 from ratd.reproduction.course import BAM
-from ratd.reproduction.text import NOTHING, Answer, all_of, drive_rows, lies_in, near, number, over, with_error
+from ratd.reproduction.text import (
+    NOTHING,
+    Answer,
+    all_of,
+    drive_rows,
+    lies_between,
+    lies_in,
+    near,
+    number,
+    over,
+    with_error,
+)
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 
@@ -91,7 +102,7 @@ def _more_oblate(table, printed):
         f"{kind} {with_error(*mean_of(part['became'], cell_of(part)))}"
         for kind, part in own.groupby("type", sort=False)
     )
-    return Answer(f"{with_error(*value)} ({types})", holds=lies_in(*value, 0.0))
+    return Answer(f"{with_error(*value)} ({types})", holds=lies_between(*value, 0.0))
 
 
 def _slender(table, printed):
@@ -163,7 +174,7 @@ def _variation(table, printed):
         if np.isfinite(value[0]):
             at_rest = mean_of(off["start"], own["cell"])[0]
             parts.append(f"{kind} {with_error(*value)} (at rest {number(at_rest)})")
-            verdicts.append(lies_in(*value, 0.0))
+            verdicts.append(lies_between(*value, 0.0))
     return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
 
 

@@ -99,6 +99,19 @@ def lies_in(value, error, low=-np.inf, high=np.inf):
     return False if most < low or least > high else None
 
 
+def lies_between(value, error, low=-np.inf, high=np.inf):
+    """Whether a value lies above `low` and below `high`, as `lies_in`, but of the range the ends do not count.
+
+    Returns
+    -------
+    bool or None
+    """
+    least, most = value - 2 * error, value + 2 * error
+    if low < least and most < high:
+        return True
+    return False if most <= low or least >= high else None
+
+
 def all_of(verdicts):
     """Verdict on a finding that has several parts: False where one fails, True where all hold, else None."""
     verdicts = list(verdicts)
