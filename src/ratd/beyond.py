@@ -9,7 +9,7 @@ from statistics import NormalDist
 import numpy as np
 import pandas as pd
 
-from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, eq33, fit_ensemble, size_key
+from ratd.ensemble import cell_of, eq33, size_key
 from ratd.errors import InputError
 from ratd.materials import get_material
 from ratd.statistics import equal_weights, mean_of, slope_error, slope_of
@@ -29,9 +29,7 @@ LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out
 """Ways to leave grains out of a fit, in words."""
 
 
-def cross_validation(
-    table, mark="omega_disr", by="size", folds=5, seed=0, materials=None, predictors=tuple(PREDICTORS)
-):
+def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, predictors=tuple(PREDICTORS)):
     """How well Eq. 33 and the cut bound predict omega of grains that they were not fitted to.
 
     Parameters
@@ -47,8 +45,6 @@ def cross_validation(
         Number of random folds.
     seed : int
         Of the folds and of the bootstrap.
-    materials : optional
-        Table of materials, handed to `ratd.materials.get_material`.
     predictors : sequence of str
         Of `PREDICTORS` and `SEPARATE`.
 
@@ -82,7 +78,7 @@ def cross_validation(
             continue
         train, test = table[~out], table[out]
         for name in predictors:
-            residual.loc[out, name] = np.log(test[mark]) - _PREDICT[name](train, test, mark, materials)
+            residual.loc[out, name] = np.log(test[mark]) - _PREDICT[name](train, test, mark)
     known = residual.notna().all(axis=1)
     rows = []
     for kind in [*dict.fromkeys(table["type"]), "all"]:
@@ -134,43 +130,51 @@ def fitted_numbers(fit, reading):
     }  # fmt: skip
 
 
-def _by_eq33(train, test, mark, materials):
-    """ln omega by Eq. 33 fitted to the grains `train`, for those of `test`; NaN where there is no fit."""
-    fit = fit_ensemble(train, PAPER_MEAN_RADIUS, mark=mark, n_bootstrap=1, materials=materials)
-    numbers = fitted_numbers(fit, fit["mean_radius"].values[0])
-    return np.log(eq33_omega(test, numbers, PAPER_MEAN_RADIUS, materials))
+def _by_powers(logarithms):
+    """What predicts ln omega of grains as a constant and powers of some quantities over a_eff, fitted to others.
+
+    `logarithms` makes the logarithms of these quantities of grains, shape (n, k). Each material and type has a fit of
+    its own, as `ratd.ensemble.fit_ensemble` makes it, of which the constants of the material only change the level.
+    """
+
+    def predict(train, test, mark):
+        predicted = pd.Series(np.nan, index=test.index)
+        known = {cell: rows for cell, rows in train.groupby(["material", "type"])}
+        for cell, rows in test.groupby(["material", "type"]):
+            own = known.get(cell)
+            if own is None or size_key(own["a_eff"]).nunique() < 2:
+                continue
+            x, y = logarithms(own), np.log(own[mark] * own["a_eff"]).to_numpy(float)
+            if len(y) < x.shape[1] + 2 or not np.ptp(x, axis=0).any():
+                continue
+            weights = equal_weights(size_key(own["a_eff"]))
+            middle, level = np.average(x, axis=0, weights=weights), np.average(y, weights=weights)
+            # of least norm about the means, where grains leave a power open, as <N_con> of grains without loops does
+            root = np.sqrt(weights)
+            powers = np.linalg.lstsq((x - middle) * root[:, None], (y - level) * root, rcond=1e-9)[0]
+            predicted[rows.index] = level + (logarithms(rows) - middle) @ powers - np.log(rows["a_eff"])
+        return predicted
+
+    return predict
 
 
-def _by_separate_exponents(train, test, mark, materials):
-    """As `_by_eq33`, with an exponent each for <N_con>, N_mon and phi."""
-    predicted = pd.Series(np.nan, index=test.index)
-    known = {cell: rows for cell, rows in train.groupby(["material", "type"])}
-    for cell, rows in test.groupby(["material", "type"]):
-        own = known.get(cell)
-        if own is None or len(own) <= len(_exponents_of(own).T):
-            continue
-        root = np.sqrt(equal_weights(size_key(own["a_eff"])))
-        y = np.log(own[mark] * own["a_eff"]).to_numpy(float)
-        # of least norm about the means, where grains leave an exponent open, as <N_con> of grains without loops does
-        x = _exponents_of(own)
-        means = np.average(x, axis=0, weights=root**2), np.average(y, weights=root**2)
-        powers = np.linalg.lstsq((x - means[0]) * root[:, None], (y - means[1]) * root, rcond=1e-9)[0]
-        predicted[rows.index] = means[1] + (_exponents_of(rows) - means[0]) @ powers - np.log(rows["a_eff"])
-    return predicted
+def _common(rows):
+    """ln(N_con phi), shape (n, 1)."""
+    return np.log((rows["n_contacts"] * rows["filling_factor"]).to_numpy(float))[:, None]
 
 
-def _exponents_of(rows):
-    """Logarithms that the separate exponents multiply, shape (n, 3)."""
+def _separate(rows):
+    """ln of <N_con>, N_mon and phi, shape (n, 3)."""
     per_monomer = rows["n_contacts"] / rows["n_monomers"]
     return np.log(np.column_stack([per_monomer, rows["n_monomers"], rows["filling_factor"]]).astype(float))
 
 
-def _by_cut_bound(train, test, mark, materials):
+def _by_cut_bound(train, test, mark):
     """ln omega as a constant times the cut bound."""
     return np.log(test["cut_bound"]) + _over_bound(train, mark)
 
 
-def _by_cut_bound_of_type(train, test, mark, materials):
+def _by_cut_bound_of_type(train, test, mark):
     """ln omega as a constant of its type times the cut bound."""
     of_type = {kind: _over_bound(part, mark) for kind, part in train.groupby("type")}
     return np.log(test["cut_bound"]) + test["type"].map(of_type)
@@ -182,8 +186,8 @@ def _over_bound(table, mark):
 
 
 _PREDICT = {
-    **dict(zip(PREDICTORS, (_by_eq33, _by_cut_bound, _by_cut_bound_of_type), strict=True)),
-    SEPARATE: _by_separate_exponents,
+    **dict(zip(PREDICTORS, (_by_powers(_common), _by_cut_bound, _by_cut_bound_of_type), strict=True)),
+    SEPARATE: _by_powers(_separate),
 }
 
 

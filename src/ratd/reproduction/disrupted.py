@@ -227,7 +227,7 @@ def _fit(data):
         return Answer("; ".join(parts), holds=all_of(verdicts)) if parts else None
 
     def separate(table, printed):
-        found = {by: _over_one_exponent(table, by, materials) for by in LEFT_OUT}
+        found = {by: _over_one_exponent(table, by) for by in LEFT_OUT}
         value = found["fold"].pop("all")
         if not np.isfinite(value[0]):
             return None
@@ -264,14 +264,14 @@ def _beyond_errors(values, errors):
     return spread, np.sqrt(np.sum(4 * values**2 * errors**2 + 2 * errors**4)) / len(values)
 
 
-def _over_one_exponent(table, by, materials):
+def _over_one_exponent(table, by):
     """Type, or "all", -> scatter with separate exponents over that with one, and its error.
 
     Random folds are drawn several times: the mean, and what they differ by counts as error too.
     """
     found = []
     for seed in range(FOLDINGS if by == "fold" else 1):
-        one = cross_validation(table, by=by, seed=seed, materials=materials, predictors=("Eq. 33", SEPARATE))
+        one = cross_validation(table, by=by, seed=seed, predictors=("Eq. 33", SEPARATE))
         found.append(one[one["predictor"] == SEPARATE].set_index("type")[["over_first", "over_first_error"]])
     ratio, error = (pd.DataFrame([one[name] for one in found]) for name in ("over_first", "over_first_error"))
     spread = ratio.std() if len(found) > 1 else 0.0

@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from ratd.beyond import SPLIT
-from ratd.calibration import PRINTED_STEP
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.growth import RadiusDistribution
-from ratd.laws.jkr import dissipation_time
-from ratd.materials import equilibrium_contact_radius, reduced_radius
 from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import PM, whole_nm
+from ratd.reproduction.pair_test import printed_step
 from ratd.reproduction.paper import GRAINS, MOST, PRINTED
 from ratd.reproduction.text import (
     NOTHING,
@@ -143,14 +141,7 @@ def _before(table, kind):
 
 
 def _step(data):
-    radius = 10 * NM
-    steps = []
-    for name in data.plan.config["materials"]:
-        material = data.plan.materials[name]
-        R = reduced_radius(radius, radius)
-        r0 = equilibrium_contact_radius(R, material.surface_energy, material.reduced_modulus)
-        mass = 4 / 3 * np.pi * material.density * radius**3
-        steps.append(PRINTED_STEP * dissipation_time(mass, R, r0, material.surface_energy))
+    steps = [printed_step(data.plan.materials[name], 10 * NM) for name in data.plan.config["materials"]]
     printed = PRINTED["step"]
     ends = (min(steps), max(steps))
     text = f"{between(*(1e12 * end for end in ends))} ps"

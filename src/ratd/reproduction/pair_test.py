@@ -132,6 +132,30 @@ def smallest_and_largest(pairs):
     return here.loc[[*radius.idxmin(), *radius.idxmax()]].reset_index(drop=True) if len(here) else None
 
 
+def printed_step(material, radius):
+    """Time step of the paper for two equal monomers in contact, f = `ratd.calibration.PRINTED_STEP`.
+
+    Parameters
+    ----------
+    material : ratd.Material
+    radius : float
+        [m]
+
+    Returns
+    -------
+    float
+        [s], f t_dis.
+
+    References
+    ----------
+    Reissl et al. (2024), A&A 692, A60, Eq. 31.
+    """
+    R = reduced_radius(radius, radius)
+    contact = equilibrium_contact_radius(R, material.surface_energy, material.reduced_modulus)
+    mass = 4 / 3 * np.pi * material.density * radius**3
+    return PRINTED_STEP * dissipation_time(mass, R, contact, material.surface_energy)
+
+
 def with_share_and_step(pairs, materials):
     """Pairs of equal monomers with what `ratd.solid.solid_omega` asks for.
 
@@ -155,9 +179,7 @@ def with_share_and_step(pairs, materials):
         mass = 4 / 3 * np.pi * material.density * radius**3
         moment = mass * (2 * (radius - equilibrium_compression(*constants) / 2) ** 2 + 0.8 * radius**2)
         share = ensemble.spin_share(np.full(2, radius), material.density, moment)
-        contact = equilibrium_contact_radius(*constants)
-        step = PRINTED_STEP * dissipation_time(mass, constants[0], contact, material.surface_energy)
-        rows.append({"share": share, "timestep": step})
+        rows.append({"share": share, "timestep": printed_step(material, radius)})
     return pairs.assign(**pd.DataFrame(rows, index=pairs.index))
 
 
