@@ -1,0 +1,9 @@
+"""Order of the test files."""
+
+LONGEST = ("test_pipeline.py", "test_cuda.py", "test_reproduction.py")
+"""Started first, so that no worker is left alone with one of them at the end."""
+
+
+def pytest_collection_modifyitems(items):
+    """Put the files of `LONGEST` before the others, which keep their order."""
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
