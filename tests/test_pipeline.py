@@ -41,11 +41,10 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def copy_of(finished, tmp_path):
-    """A copy of the finished pipeline, with its own source, that a test may change."""
+    """A copy of the finished pipeline that a test may change."""
     shutil.copytree(finished.folder, tmp_path / "copy", symlinks=True)
     pipeline = object.__new__(Pipeline)
     pipeline.folder, pipeline.environment = tmp_path / "copy", dict(os.environ)
-    pipeline.own_source()
     return pipeline
 
 
@@ -86,10 +85,10 @@ def test_second_run_does_nothing(finished):
 
 
 def test_touching_and_explaining_source_does_nothing(copy_of):
+    source = copy_of.own_source()
     for folder in ("src", "workflow", "config"):
         for path in (copy_of.folder / folder).rglob("*.*"):
             path.touch()
-    source = copy_of.own_source()
     for path in (source / "spinup.py", source / "growth.py"):
         path.write_text(path.read_text() + "\n# a remark at the end\n")
     assert copy_of.planned() == {}

@@ -68,23 +68,22 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, predi
         if name not in _PREDICT:
             raise InputError(f"cross_validation: predictor is {name!r}, allowed are {', '.join(map(repr, _PREDICT))}")
     needed = [mark, "cut_bound", "n_monomers", "n_contacts", "filling_factor", "a_eff"]
-    table = table[(table[needed].astype(float) > 0).all(axis=1)].reset_index(drop=True)
+    table = table[(table[needed].astype(float) > 0).all(axis=1)]
+    grains = _Grains(table, mark)
     rng = np.random.Generator(np.random.PCG64(seed))
-    group = size_key(table["a_eff"]).to_numpy() if by == "size" else rng.permutation(len(table)) % folds
-    residual = pd.DataFrame(np.nan, index=table.index, columns=list(predictors))
+    group = grains.size if by == "size" else rng.permutation(len(table)) % folds
+    residual = np.full((len(table), len(predictors)), np.nan)
     for value in np.unique(group):
         out = group == value
         if out.all():
             continue
-        train, test = table[~out], table[out]
-        for name in predictors:
-            residual.loc[out, name] = np.log(test[mark]) - _PREDICT[name](train, test, mark)
-    known = residual.notna().all(axis=1)
+        for k, name in enumerate(predictors):
+            residual[out, k] = (np.log(grains.omega) - _PREDICT[name](grains, ~out))[out]
+    known = ~np.isnan(residual).any(axis=1)
     rows = []
-    for kind in [*dict.fromkeys(table["type"]), "all"]:
-        chosen = known if kind == "all" else known & (table["type"] == kind)
-        weights = equal_weights(cell_of(table[chosen]))
-        found = _scatter(residual.loc[chosen].to_numpy(), weights, rng)
+    for kind in [*dict.fromkeys(grains.type), "all"]:
+        chosen = known if kind == "all" else known & (grains.type == kind)
+        found = _scatter(residual[chosen], equal_weights(grains.cell[chosen]), rng)
         rows += [{"type": kind, "predictor": name, **own, "n_grains": int(chosen.sum())}
                  for name, own in zip(predictors, found, strict=True)]  # fmt: skip
     return pd.DataFrame(rows)
@@ -130,64 +129,74 @@ def fitted_numbers(fit, reading):
     }  # fmt: skip
 
 
-def _by_powers(logarithms):
-    """What predicts ln omega of grains as a constant and powers of some quantities over a_eff, fitted to others.
+class _Grains:
+    """What is predicted of the grains of a table, and what from, as arrays, of which a part is quickly taken."""
 
-    `logarithms` makes the logarithms of these quantities of grains, shape (n, k). Each material and type has a fit of
-    its own, as `ratd.ensemble.fit_ensemble` makes it, of which the constants of the material only change the level.
+    def __init__(self, table, mark):
+        self.omega, self.a_eff, self.cut_bound = table[[mark, "a_eff", "cut_bound"]].to_numpy(float).T
+        self.contacts, self.monomers, self.filling = (
+            table[["n_contacts", "n_monomers", "filling_factor"]].to_numpy(float).T
+        )
+        self.type = table["type"].to_numpy()
+        self.series = pd.MultiIndex.from_frame(table[["material", "type"]]).factorize()[0]
+        self.size, self.cell = size_key(table["a_eff"]).to_numpy(), cell_of(table)
+
+    def common(self):
+        """ln(N_con phi), shape (n, 1)."""
+        return np.log(self.contacts * self.filling)[:, None]
+
+    def separate(self):
+        """ln of <N_con>, N_mon and phi, shape (n, 3)."""
+        return np.log(np.column_stack([self.contacts / self.monomers, self.monomers, self.filling]))
+
+
+def _by_powers(logarithms):
+    """What predicts ln omega of grains as a constant and powers of some quantities over a_eff.
+
+    `logarithms` makes the logarithms of these quantities of `_Grains`, shape (n, k). What predicts takes them and which
+    of them it is fitted to. Each material and type has a fit of its own, as `ratd.ensemble.fit_ensemble` makes it, of
+    which the constants of the material only change the level.
     """
 
-    def predict(train, test, mark):
-        predicted = pd.Series(np.nan, index=test.index)
-        known = {cell: rows for cell, rows in train.groupby(["material", "type"])}
-        for cell, rows in test.groupby(["material", "type"]):
-            own = known.get(cell)
-            if own is None or size_key(own["a_eff"]).nunique() < 2:
+    def predict(grains, train):
+        x, y = logarithms(grains), np.log(grains.omega * grains.a_eff)
+        predicted = np.full(len(y), np.nan)
+        for series in np.unique(grains.series):
+            rows = grains.series == series
+            own = rows & train
+            size = grains.size[own]
+            if len(np.unique(size)) < 2 or len(size) < x.shape[1] + 2 or not np.ptp(x[own], axis=0).any():
                 continue
-            x, y = logarithms(own), np.log(own[mark] * own["a_eff"]).to_numpy(float)
-            if len(y) < x.shape[1] + 2 or not np.ptp(x, axis=0).any():
-                continue
-            weights = equal_weights(size_key(own["a_eff"]))
-            middle, level = np.average(x, axis=0, weights=weights), np.average(y, weights=weights)
+            weights = equal_weights(size)
+            middle, level = np.average(x[own], axis=0, weights=weights), np.average(y[own], weights=weights)
             # of least norm about the means, where grains leave a power open, as <N_con> of grains without loops does
             root = np.sqrt(weights)
-            powers = np.linalg.lstsq((x - middle) * root[:, None], (y - level) * root, rcond=1e-9)[0]
-            predicted[rows.index] = level + (logarithms(rows) - middle) @ powers - np.log(rows["a_eff"])
+            powers = np.linalg.lstsq((x[own] - middle) * root[:, None], (y[own] - level) * root, rcond=1e-9)[0]
+            predicted[rows] = level + (x[rows] - middle) @ powers - np.log(grains.a_eff[rows])
         return predicted
 
     return predict
 
 
-def _common(rows):
-    """ln(N_con phi), shape (n, 1)."""
-    return np.log((rows["n_contacts"] * rows["filling_factor"]).to_numpy(float))[:, None]
-
-
-def _separate(rows):
-    """ln of <N_con>, N_mon and phi, shape (n, 3)."""
-    per_monomer = rows["n_contacts"] / rows["n_monomers"]
-    return np.log(np.column_stack([per_monomer, rows["n_monomers"], rows["filling_factor"]]).astype(float))
-
-
-def _by_cut_bound(train, test, mark):
+def _by_cut_bound(grains, train):
     """ln omega as a constant times the cut bound."""
-    return np.log(test["cut_bound"]) + _over_bound(train, mark)
+    return np.log(grains.cut_bound) + _over_bound(grains, train)
 
 
-def _by_cut_bound_of_type(train, test, mark):
+def _by_cut_bound_of_type(grains, train):
     """ln omega as a constant of its type times the cut bound."""
-    of_type = {kind: _over_bound(part, mark) for kind, part in train.groupby("type")}
-    return np.log(test["cut_bound"]) + test["type"].map(of_type)
+    over = {kind: _over_bound(grains, train & (grains.type == kind)) for kind in dict.fromkeys(grains.type)}
+    return np.log(grains.cut_bound) + np.array([over[kind] for kind in grains.type])
 
 
-def _over_bound(table, mark):
+def _over_bound(grains, chosen):
     """Mean ln of omega over the cut bound; all cells count alike."""
-    return mean_of(np.log(table[mark] / table["cut_bound"]), cell_of(table))[0]
+    return mean_of(np.log(grains.omega[chosen] / grains.cut_bound[chosen]), grains.cell[chosen])[0]
 
 
 _PREDICT = {
-    **dict(zip(PREDICTORS, (_by_powers(_common), _by_cut_bound, _by_cut_bound_of_type), strict=True)),
-    SEPARATE: _by_powers(_separate),
+    **dict(zip(PREDICTORS, (_by_powers(_Grains.common), _by_cut_bound, _by_cut_bound_of_type), strict=True)),
+    SEPARATE: _by_powers(_Grains.separate),
 }
 
 

@@ -499,8 +499,10 @@ def _describe(name):
 
 def cell_of(table):
     """Number of the cell (material, type, size) of each grain of a table, array of int."""
-    keys = [table["material"], table["type"], size_key(table["a_eff"])]
-    return table.groupby(keys, sort=False).ngroup().to_numpy()
+    cell = np.zeros(len(table), dtype=np.int64)
+    for key in (table["material"], table["type"], size_key(table["a_eff"])):
+        cell = pd.factorize(cell * len(table) + pd.factorize(key)[0])[0]
+    return cell
 
 
 def size_key(a_eff):

@@ -14,7 +14,6 @@ and decides no number, so it stays outside the hash. What it does decide, the va
 import ast
 import hashlib
 import json
-import os
 import tokenize
 from functools import cache
 from importlib import metadata
@@ -32,27 +31,29 @@ NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")
 _ROOT = Path(__file__).parent
 
 
-def module_path(name, root=_ROOT):
-    """Source file of a module of ratd.
+def module_files(root=_ROOT):
+    """Source files of all modules of ratd.
 
     Parameters
     ----------
-    name : str
-        Dotted name, e.g. ``"ratd.laws.jkr"``; ``"ratd"`` is the package itself.
     root : Path, optional
         Folder of the package.
 
     Returns
     -------
-    Path or None
-        None where no module has this name (it may be a function or a class of a module).
+    dict of str to Path
+        Dotted name, e.g. ``"ratd.laws.jkr"``, -> file; ``"ratd"`` is the package itself, and stands for its
+        ``__init__.py`` as every package does.
     """
-    below = root.joinpath(*name.split(".")[1:])
-    for path in (below / "__init__.py", below.with_suffix(".py")):
-        # the case must agree as well: on a file system that ignores it, `ratd.Grain` is not the module `ratd.grain`
-        if path.is_file() and path.name in os.listdir(path.parent):
-            return path
-    return None
+    # The names are those of a listing: on a file system that ignores case, `ratd.Grain` is not the module `ratd.grain`.
+    files = {}
+    for path in sorted(root.rglob("*.py")):
+        *folders, name = path.relative_to(root).with_suffix("").parts
+        if name == "__init__":
+            files[".".join(("ratd", *folders))] = path
+        else:
+            files.setdefault(".".join(("ratd", *folders, name)), path)
+    return files
 
 
 def imported_modules(source, name=None, root=_ROOT):
@@ -78,38 +79,50 @@ def imported_modules(source, name=None, root=_ROOT):
     InputError
         If it imports from a module of ratd that does not exist.
     """
+    return _imported(source, name, module_files(root))
+
+
+def _imported(source, name, files):
+    """`imported_modules` among the modules of `files`, see `module_files`."""
     found = set()
-    for node in _imports(source):
+    for node in _statements(source)[0]:
         if isinstance(node, ast.Import):
             modules = candidates = [alias.name for alias in node.names]
         else:
             base = node.module or ""
             if node.level:
-                package = name if module_path(name, root).name == "__init__.py" else name.rpartition(".")[0]
+                package = name if files[name].name == "__init__.py" else name.rpartition(".")[0]
                 for _ in range(node.level - 1):
                     package = package.rpartition(".")[0]
                 base = f"{package}.{base}" if base else package
             modules, candidates = [base], [base, *(f"{base}.{alias.name}" for alias in node.names)]
         for module in modules:
-            if module.split(".")[0] == "ratd" and module_path(module, root) is None:
+            if module.split(".")[0] == "ratd" and module not in files:
                 raise InputError(f"{name or 'a script'} imports {module}, but there is no such module")
         for candidate in candidates:
             parts = candidate.split(".")
-            if parts[0] != "ratd":
-                continue
             # importing a.b.c runs a and a.b too
-            for depth in range(1, len(parts) + 1):
-                prefix = ".".join(parts[:depth])
-                if module_path(prefix, root) is not None:
-                    found.add(prefix)
-    return found
+            found.update(".".join(parts[:depth]) for depth in range(1, len(parts) + 1))
+    return found & files.keys()
 
 
 # Snakemake takes the hashes of all scripts at each start; most of them are of the same modules.
 @cache
-def _imports(source):
-    """Statements of import in a piece of Python source, list of ast.Import and ast.ImportFrom."""
-    return [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Import | ast.ImportFrom)]
+def _statements(source):
+    """Statements of import, and strings that stand alone, in a piece of Python source: two lists of nodes."""
+    imports, strings = [], []
+    waiting = [ast.parse(source)]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            imports.append(node)
+        elif isinstance(node, ast.Expr):
+            if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+                strings.append(node)
+        else:
+            # expressions, by far the most of all nodes, hold no statements
+            waiting += [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
+    return imports, strings
 
 
 @cache
@@ -135,11 +148,10 @@ def essential_text(source):
         # a row that holds nothing else ends in NL, one that ends a statement in NEWLINE
         if token.type == tokenize.NL and not lines[row].strip():
             left_out.add(row)
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
-            first, last = node.lineno - 1, node.end_lineno
-            if not lines[first].encode()[: node.col_offset].strip():
-                left_out.update(range(first, last))
+    for node in _statements(source)[1]:
+        first, last = node.lineno - 1, node.end_lineno
+        if not lines[first].encode()[: node.col_offset].strip():
+            left_out.update(range(first, last))
     return "\n".join(line for row, line in enumerate(lines) if row not in left_out)
 
 
@@ -165,18 +177,22 @@ def closure(modules, root=_ROOT, leave_out=PLUMBING):
     InputError
         If ratd has no module of one of the names.
     """
+    return sorted(_texts(modules, module_files(root), leave_out))
+
+
+def _texts(modules, files, leave_out=PLUMBING):
+    """Source of every module of `closure`: dict of dotted name to text."""
     waiting = [name for name in modules if name not in leave_out]
-    found = set()
+    found = {}
     while waiting:
         name = waiting.pop()
         if name in found:
             continue
-        path = module_path(name, root)
-        if path is None:
+        if name not in files:
             raise InputError(f"there is no module {name!r} in ratd to take a source hash of")
-        found.add(name)
-        waiting.extend(imported_modules(path.read_text(), name, root) - found - set(leave_out))
-    return sorted(found)
+        found[name] = files[name].read_text()
+        waiting.extend(_imported(found[name], name, files) - found.keys() - set(leave_out))
+    return found
 
 
 def source_hash(script=None, modules=(), extra=(), root=_ROOT):
@@ -205,13 +221,14 @@ def source_hash(script=None, modules=(), extra=(), root=_ROOT):
         If ratd has no module of one of the names.
     """
     digest = hashlib.sha256()
+    files = module_files(root)
     start = set(modules)
     if script is not None:
         text = Path(script).read_text()
-        start |= imported_modules(text, root=root)
+        start |= _imported(text, None, files)
         digest.update(f"script\0{essential_text(text)}\0".encode())
-    for name in closure(start, root):
-        digest.update(f"{name}\0{essential_text(module_path(name, root).read_text())}\0".encode())
+    for name, text in sorted(_texts(start, files).items()):
+        digest.update(f"{name}\0{essential_text(text)}\0".encode())
     for text in extra:
         digest.update(f"extra\0{text}\0".encode())
     return digest.hexdigest()[:16]

@@ -1,5 +1,7 @@
 """Medians, means and slopes with their uncertainty, of values of which some cells may have more than others."""
 
+from functools import lru_cache
+
 import numpy as np
 import pandas as pd
 
@@ -95,12 +97,17 @@ def median_of(values, group=None, seed=0, cell=None):
     n_groups = member.max() + 1
     error = np.nan
     if n_groups > 2:  # the middle of two draws of two is nearly always one of three values
-        rng = np.random.Generator(np.random.PCG64(seed))
-        draws = rng.integers(n_groups, size=(N_BOOTSTRAP, n_groups))
-        often = np.array([np.bincount(draw, minlength=n_groups) for draw in draws])[:, member]
+        often = _bootstrap(n_groups, seed)[:, member]
         medians = _of_sorted(values, often * weights, often.sum(axis=1), np.array([0.5]))
         error = float(np.std(medians, ddof=1))
     return dict(median=float(median), error=error, low=float(low), high=float(high), n=len(values))
+
+
+@lru_cache(maxsize=64)  # a document has many medians of as many values
+def _bootstrap(n, seed):
+    """How often each of n is drawn in each of the bootstrap's samples, shape (N_BOOTSTRAP, n)."""
+    draws = np.random.Generator(np.random.PCG64(seed)).integers(n, size=(N_BOOTSTRAP, n))
+    return np.array([np.bincount(draw, minlength=n) for draw in draws], dtype=np.int16)
 
 
 def mean_of(values, cell=None):
