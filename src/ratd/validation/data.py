@@ -59,8 +59,9 @@ def read_pieces(folder, check):
     except FileError:
         return {}
     found, first = {}, 0
+    bare = table.drop_attrs()
     for name, cases, kept in json.loads(table.attrs.get("pieces", "[]")):
-        found[name] = table.isel({CASE: slice(first, first + cases)}).drop_attrs().assign_attrs(kept)
+        found[name] = bare.isel({CASE: slice(first, first + cases)}).assign_attrs(kept)
         first += cases
     return found
 
