@@ -40,6 +40,27 @@ def test_closure_follows_imports_wherever_they_stand(package):
     assert closure(["ratd.top"], package) == ["ratd.low", "ratd.middle", "ratd.top"]
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        "if x:",
+        "if x:\n    pass\nelse:",
+        "for x in y:\n    pass\nelse:",
+        "while x:",
+        "with x:",
+        "try:\n    pass\nexcept ValueError:",
+        "try:\n    pass\nfinally:",
+        "match x:\n  case 1:",
+        "async def f():",
+        "class A:",
+    ],
+)
+def test_imports_are_found_and_texts_left_out_in_every_kind_of_block(head):
+    source = f"{head}\n    import ratd.units\n"
+    assert imported_modules(source) == {"ratd", "ratd.units"}
+    assert essential_text(f'{head}\n    """Text."""\n    import ratd.units\n') == essential_text(source)
+
+
 def test_closure_follows_relative_imports_and_packages(package):
     found = closure(["ratd.other"], package)
     assert found == ["ratd.low", "ratd.other", "ratd.sub", "ratd.sub.leaf", "ratd.sub.twig"]
