@@ -5,6 +5,7 @@ import pandas as pd
 import xarray as xr
 
 from ratd.ensemble import eq33
+from ratd.marks import disruption
 from ratd.materials import get_material
 
 CONTACTS = {"BA": lambda n: n - 1, "BAM1": lambda n: 2 * n - 3, "BAM2": lambda n: 3 * n - 6}
@@ -185,3 +186,8 @@ def make_table(
                         }
                     )
     return pd.DataFrame(rows)
+
+
+def marked(run):
+    """A run and its marks."""
+    return run, disruption(run)

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from ratd.reproduction import course, disrupted, peak, shapes, structure
-from synthetic_runs import make_run, make_table
+from synthetic_runs import make_run, make_table, marked
 
 
 def holds(rows, key, drive="prescribed"):
@@ -32,15 +32,15 @@ def with_stress(*stress):
 
 def test_rise_and_fall_of_the_stress_are_those_of_its_running_median():
     steady = with_stress(*range(1, 101), *[100] * 3, *[40] * 9)
-    assert peak.greatest_fall(steady) == 0
+    assert peak.greatest_fall(*marked(steady)) == 0
     # the median over 5 records holds the plateau of 3 for one record longer than it lasts
-    assert peak.omega_of_half(steady) == pytest.approx(104 / 103, rel=0.02)
+    assert peak.omega_of_half(*marked(steady)) == pytest.approx(104 / 103, rel=0.02)
     falls = with_stress(*range(1, 61), *[30] * 10, *range(61, 101), *[100] * 3, *[40] * 9)
-    assert peak.greatest_fall(falls) == pytest.approx(0.28)  # from the third last record before the fall, 58
+    assert peak.greatest_fall(*marked(falls)) == pytest.approx(0.28)  # from the third last record before the fall, 58
     slow = with_stress(*range(1, 101), *range(100, 40, -1), *[1] * 6)
-    assert peak.omega_of_half(slow) == pytest.approx(1.5, rel=0.01)
+    assert peak.omega_of_half(*marked(slow)) == pytest.approx(1.5, rel=0.01)
     ends_early = make_run(1e8, end=0.9e8)
-    assert np.isnan(peak.greatest_fall(ends_early)) and np.isnan(peak.omega_of_half(ends_early))
+    assert np.isnan(peak.greatest_fall(*marked(ends_early))) and np.isnan(peak.omega_of_half(*marked(ends_early)))
 
 
 def test_rows_of_the_peak(table):
@@ -53,14 +53,14 @@ def test_rows_of_the_peak(table):
         pieces = fragments.assign(mass_fraction=np.tile([0.05, 0.02, 0.04, 0.03 if small else 0.4], 8))
         found = peak.rows(
             SimpleNamespace(
-                course={"prescribed": runs},
+                course={"prescribed": [marked(run) for run in runs]},
                 tables={"prescribed": table.assign(mass_fraction_disr=0.75 if quarter else 0.9)},
                 fragments={"prescribed": pieces},
             )
         )
         assert holds(found, "abrupt") is small and holds(found, "peak_mass") is quarter
         assert holds(found, "stress_drop") is small and holds(found, "stress_rise") is True
-    nothing = SimpleNamespace(course={"prescribed": [restless] * 3}, tables={}, fragments={})
+    nothing = SimpleNamespace(course={"prescribed": [marked(restless)] * 3}, tables={}, fragments={})
     assert holds(peak.rows(nothing), "stress_rise") is False
 
 

@@ -32,7 +32,7 @@ from ratd.solid import solid_omega
 from ratd.validation.data import kind_of, table_path
 from ratd.validation.literal import COLUMNS as LITERAL_COLUMNS
 from ratd.validation.tables import write_table
-from synthetic_runs import NO_CHECKS, make_run, make_table
+from synthetic_runs import NO_CHECKS, make_run, make_table, marked
 
 ROOT = Path(__file__).parents[1]
 SIZES = (200e-9, 300e-9, 350e-9, 500e-9)
@@ -279,7 +279,7 @@ def test_what_a_drive_was_fixed_on_decides_nothing(folder):
     runs = {"seed": [0], "printed_acceleration": [2e13], "timestep_factor": [0.02], "omega_mass_99": [3e8]}
     runs = {name: ("entry", column) for name, column in runs.items()}
     run = make_run(3e8, omega_1=3e8, steps=[(3e8, 0.5)], end=4e8)
-    data.__dict__["course"] = {drive: [run] for drive in data.drives}
+    data.__dict__["course"] = {drive: [marked(run)] for drive in data.drives}
     for low, fixed in ((1.9e13, True), (2.01e13, False)):
         ends = {"calibrated_low": low, "calibrated_high": 2.1e13}
         data.__dict__["calibration"] = xr.Dataset(values | ends | runs)

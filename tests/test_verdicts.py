@@ -18,7 +18,7 @@ from ratd.reproduction.text import all_of, lies_in, near
 from ratd.schema import END_REASONS
 from ratd.validation.convergence import MARKS
 from ratd.validation.show.convergence import large_shifts, rate_exponent
-from synthetic_runs import NO_CHECKS, make_run, make_table
+from synthetic_runs import NO_CHECKS, make_run, make_table, marked
 
 ROOT = Path(__file__).parents[1]
 SIZES = (200e-9, 300e-9, 350e-9, 500e-9)
@@ -236,7 +236,7 @@ def spun_up(*steps, seeds=4):
     ],
 )
 def test_findings_on_the_course(data, key, runs, holds):
-    data.__dict__["course"] = {"prescribed": [run.assign_attrs(initial_mass=4.76e-16) for run in runs]}
+    data.__dict__["course"] = {"prescribed": [marked(run.assign_attrs(initial_mass=4.76e-16)) for run in runs]}
     data.__dict__["shown"] = {}
     assert verdict(data, key) is holds
 

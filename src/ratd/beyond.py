@@ -12,7 +12,7 @@ import pandas as pd
 from ratd.ensemble import cell_of, eq33, size_key
 from ratd.errors import InputError
 from ratd.materials import get_material
-from ratd.statistics import equal_weights, mean_of, slope_error, slope_of
+from ratd.statistics import drawn_counts, equal_weights, mean_of, slope_error, slope_of
 
 SPLIT = 300e-9
 """Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
@@ -207,8 +207,7 @@ def _scatter(residual, weights, rng):
         names = ("scatter", "error", "bias", "more", "more_error", "over_first", "over_first_error")
         return [dict.fromkeys(names, np.nan)] * columns
     scatter = np.sqrt(np.average(residual**2, axis=0, weights=weights))
-    draws = rng.integers(n, size=(N_BOOTSTRAP, n))
-    often = np.array([np.bincount(draw, minlength=n) for draw in draws]) * weights
+    often = drawn_counts(rng, N_BOOTSTRAP, n) * weights
     drawn = np.sqrt(often @ residual**2 / often.sum(axis=1, keepdims=True))
     more = drawn - drawn[:, [scatter.argmin()]]
     with np.errstate(invalid="ignore", divide="ignore"):  # the first may be exact

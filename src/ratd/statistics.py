@@ -5,7 +5,16 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 
-__all__ = ["equal_weights", "jackknife_error", "mean_of", "median_of", "quantiles", "slope_error", "slope_of"]
+__all__ = [
+    "drawn_counts",
+    "equal_weights",
+    "jackknife_error",
+    "mean_of",
+    "median_of",
+    "quantiles",
+    "slope_error",
+    "slope_of",
+]
 
 N_BOOTSTRAP = 2000
 
@@ -106,8 +115,22 @@ def median_of(values, group=None, seed=0, cell=None):
 @lru_cache(maxsize=64)  # a document has many medians of as many values
 def _bootstrap(n, seed):
     """How often each of n is drawn in each of the bootstrap's samples, shape (N_BOOTSTRAP, n)."""
-    draws = np.random.Generator(np.random.PCG64(seed)).integers(n, size=(N_BOOTSTRAP, n))
-    return np.array([np.bincount(draw, minlength=n) for draw in draws], dtype=np.int16)
+    return drawn_counts(np.random.Generator(np.random.PCG64(seed)), N_BOOTSTRAP, n).astype(np.int16)
+
+
+def drawn_counts(rng, samples, n):
+    """How often each of n is drawn in each of some bootstrap samples.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    samples, n : int
+
+    Returns
+    -------
+    numpy.ndarray of int, shape (samples, n)
+    """
+    return np.array([np.bincount(draw, minlength=n) for draw in rng.integers(n, size=(samples, n))])
 
 
 def mean_of(values, cell=None):

@@ -6,7 +6,7 @@ from ratd.beyond import binomial_interval
 from ratd.calibration import onset
 from ratd.ensemble import cell_of
 from ratd.fragmentation import HALF
-from ratd.marks import ROUNDING, disruption
+from ratd.marks import ROUNDING
 from ratd.reproduction.bounds import by_type_and_size, in_cell, sizes_of, split_sizes
 from ratd.reproduction.rate import is_calibrated
 from ratd.reproduction.text import (
@@ -102,7 +102,7 @@ def _onset(data):
     fixed = is_calibrated(data)
 
     def evaluate(drive, runs, printed):
-        own = _median_answer([onset(run) for run in runs], printed)
+        own = _median_answer([onset(run) for run, _ in runs], printed)
         return Answer(f"{own.text} (fixed on this)", own.ratio) if own and drive == "literal" and fixed else own
 
     sources = {drive: (drive, runs) for drive, runs in data.course.items()}
@@ -164,9 +164,7 @@ def _quarter(table, printed):
 
 def _whole(data):
     """Rows on the mass of the largest fragment at parts of omega_disr, of the cell of Fig. 4 and of Fig. 5."""
-    marked = [{drive: [(run, disruption(run)) for run in runs] for drive, runs in of.items()}
-              for of in (data.course, data.shown)]  # fmt: skip
-    course, shown = marked
+    course, shown = data.course, data.shown
 
     def row(key, part, holds, reason=""):
         def evaluate(source, printed):

@@ -16,6 +16,7 @@ from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
 from ratd.ensemble import size_key
 from ratd.fragmentation import fragment_table
+from ratd.marks import disruption
 from ratd.validation.data import FOLDER as CHECKED
 from ratd.validation.data import check_table, table_path
 
@@ -181,13 +182,13 @@ class Data:
 
     @cached_property
     def course(self):
-        """Drive -> spin-up runs of the cell of Fig. 4, list of datasets."""
-        return self._each_drive("figure4/{drive}.nc", io.read_runs)
+        """Drive -> spin-up runs of the cell of Fig. 4 and their marks, list of pairs of datasets."""
+        return self._each_drive("figure4/{drive}.nc", _marked_runs)
 
     @cached_property
     def shown(self):
-        """Drive -> spin-up run of the grain of Fig. 5, in a list."""
-        return self._each_drive("figure5/{drive}.nc", io.read_runs)
+        """Drive -> spin-up run of the grain of Fig. 5 and its marks, in a list."""
+        return self._each_drive("figure5/{drive}.nc", _marked_runs)
 
     @cached_property
     def grains(self):
@@ -229,3 +230,8 @@ class Data:
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""
         return check_table(self.checks, name) if self.has_study(name) else None
+
+
+def _marked_runs(path):
+    """Spin-up runs of a file, each with its marks."""
+    return [(run, disruption(run)) for run in io.read_runs(path)]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.ensemble import cell_of
-from ratd.marks import disruption, running_median
+from ratd.marks import running_median
 from ratd.reproduction.text import Answer, all_of, between, drive_rows, lies_in, number, with_error
 from ratd.statistics import median_of
 
@@ -47,7 +47,7 @@ def _of_runs(measure, limit):
     """What evaluates the median over runs of what is measured of each, which is to lie below a limit."""
 
     def evaluate(runs, printed):
-        values = np.array([measure(run) for run in runs])
+        values = np.array([measure(run, mark) for run, mark in runs])
         values = values[np.isfinite(values)]
         if not len(values):
             return None
@@ -58,47 +58,51 @@ def _of_runs(measure, limit):
     return evaluate
 
 
-def _stress(run):
+def _stress(run, mark):
     """Running median of the stress over the whole run, and the record of omega_disr; None where the run has none."""
-    omega = float(disruption(run)["omega_disr"])
+    omega = float(mark["omega_disr"])
     stress = running_median(run["total_stress"].values)
     return stress, (int(np.searchsorted(run["omega"].values, omega * (1 - 1e-12))) if np.isfinite(omega) else None)
 
 
-def greatest_fall(run):
+def greatest_fall(run, mark):
     """Greatest fall of the stress below what it was before, up to omega_disr.
 
     Parameters
     ----------
     run : xarray.Dataset
         A spin-up run, see `ratd.spin_up`.
+    mark : xarray.Dataset
+        Its marks, from `ratd.marks.disruption`.
 
     Returns
     -------
     float
         Over the stress at omega_disr; NaN for a run without it.
     """
-    stress, peak = _stress(run)
+    stress, peak = _stress(run, mark)
     if peak is None:
         return np.nan
     before = stress[: peak + 1]
     return float(np.max(np.maximum.accumulate(before) - before) / stress[peak])
 
 
-def omega_of_half(run):
+def omega_of_half(run, mark):
     """omega at which the stress has fallen to half of its peak.
 
     Parameters
     ----------
     run : xarray.Dataset
         A spin-up run, see `ratd.spin_up`.
+    mark : xarray.Dataset
+        Its marks, from `ratd.marks.disruption`.
 
     Returns
     -------
     float
         That of the first such record behind the peak, over omega_disr; NaN where there is none.
     """
-    stress, peak = _stress(run)
+    stress, peak = _stress(run, mark)
     if peak is None:
         return np.nan
     low = np.flatnonzero(stress[peak:] <= 0.5 * stress[peak])

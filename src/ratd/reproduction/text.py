@@ -106,10 +106,7 @@ def lies_between(value, error, low=-np.inf, high=np.inf):
     -------
     bool or None
     """
-    least, most = value - 2 * error, value + 2 * error
-    if low < least and most < high:
-        return True
-    return False if most <= low or least >= high else None
+    return lies_in(value, error, np.nextafter(low, np.inf), np.nextafter(high, -np.inf))
 
 
 def all_of(verdicts):
