@@ -15,7 +15,7 @@ from ratd.figures.calibration import SPREAD
 from ratd.figures.style import TYPE_MARKER
 from ratd.fragmentation import STAGES
 from ratd.reproduction import figures
-from ratd.reproduction.bounds import ratios
+from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import DRAWN_STUDIES
 from ratd.statistics import median_of
@@ -43,20 +43,34 @@ def made_up_fragments(types=("BA", "BAM1", "BAM2"), number=200):
     )
 
 
-def test_cells_count_alike_in_the_medians_over_the_bound():
+@pytest.mark.parametrize(
+    ("draw", "column"), [(figures.bound, "found_over_bound"), (figures.overview, "found_over_printed")]
+)
+def test_cells_count_alike_in_the_medians_of_ratios(draw, column):
     """Not the grains, of which one material has ten times as many."""
     grown = make_table(sizes=(100e-9, 150e-9), seeds=10)
     few = grown[(grown["material"] == "a-C") | (grown["seed"] == 0)].reset_index(drop=True)
     few.loc[few["material"] == "a-C", "omega_disr"] *= 5
-    panel = figures.bound(grown, {"prescribed": few}).axes[0]
+    panel = draw(grown, {"prescribed": few}).axes[0]
     (drawn,) = [c for c in panel.containers if c[0].get_marker() == figures.DRIVE_LOOK["prescribed"]["marker"]]
     table = ratios(few)
     for size, y in zip((100e-9, 150e-9), drawn[0].get_ydata(), strict=True):
         part = table[(table["type"] == "BA") & np.isclose(table["a_eff"], size)]
-        expected = median_of(part["found_over_bound"], cell=cell_of(part))
-        assert y == expected["median"] != part["found_over_bound"].median()
+        expected = median_of(part[column], cell=cell_of(part))
+        assert y == expected["median"] != part[column].median()
         (segment,) = [s for s in drawn[2][0].get_segments() if np.isclose(s[0, 0], size * 1e9)]
         np.testing.assert_allclose(segment[:, 1], [expected["low"], expected["high"]])
+
+
+def test_the_firm_bound_is_drawn_where_it_is_known():
+    """In the overview as the printed Eq. 33 goes into it."""
+    grown = make_table(sizes=(100e-9, 150e-9), seeds=3)
+    firm = grown.assign(firm_bound=0.5 * table3_omega(grown))
+    for draw in (figures.overview, figures.bound):
+        assert "firm bound" in words(draw(firm, {})) and "firm bound" not in words(draw(grown, {"prescribed": grown}))
+    for axes in figures.overview(firm, {}).axes:
+        (drawn,) = axes.containers
+        np.testing.assert_allclose(drawn[0].get_xydata(), [[100, 0.5], [150, 0.5]])
 
 
 def test_lines_of_fragments_differ_in_more_than_colour():
@@ -173,7 +187,7 @@ def test_text_of_the_literal_drive_tells_how_fast_grains_turn():
 
 
 def test_every_figure_that_the_paper_does_not_have_has_a_caption():
-    assert set(CAPTIONS) == {"bound", "fragments", "calibration", "formulae", *DRAWN_STUDIES}
+    assert set(CAPTIONS) == {"overview", "bound", "fragments", "calibration", "formulae", *DRAWN_STUDIES}
     for name, caption in CAPTIONS.items():
         drawn, see = caption.split("\n\n")
         assert see.startswith("What to see: ") and see.endswith(".") and drawn.endswith("."), name

@@ -121,8 +121,10 @@ def test_the_committed_document_says_what_its_data_give():
 def test_figures_give_the_same_bytes(folder, tmp_path):
     for k in range(2):
         data = Data(str(folder), checks=NO_CHECKS)
-        save(figures.bound(data.grown, data.tables), tmp_path / f"{k}.png")
-    assert (tmp_path / "0.png").read_bytes() == (tmp_path / "1.png").read_bytes()
+        for draw in (figures.overview, figures.bound):
+            save(draw(data.grown, data.tables), tmp_path / f"{draw.__name__}_{k}.png")
+    for name in ("overview", "bound"):
+        assert (tmp_path / f"{name}_0.png").read_bytes() == (tmp_path / f"{name}_1.png").read_bytes()
 
 
 def test_ratios_are_those_of_the_functions_for_one_grain():
@@ -143,7 +145,7 @@ def test_ratios_are_those_of_the_functions_for_one_grain():
     assert row["printed_over_bound"] == pytest.approx(printed / 2.0e7, rel=1e-12)
     assert row["strength_over_bound"] == pytest.approx(midplane_bound(grain) / 2.0e7, rel=1e-9)
     assert row["found_over_bound"] == 1.5
-    assert row["printed_over_found"] == pytest.approx(printed / 3.0e7, rel=1e-12)
+    assert row["found_over_printed"] == pytest.approx(3.0e7 / printed, rel=1e-12)
 
 
 def test_materials_that_the_paper_does_not_have_get_no_printed_value():
@@ -297,7 +299,7 @@ def test_fig_1_is_as_printed():
 def test_means_of_the_document_are_those_of_the_table(folder, text):
     data = Data(str(folder), checks=NO_CHECKS)
     for drive, table in data.tables.items():
-        found = (1 / ratios(table)["printed_over_found"]).median()
+        found = ratios(table)["found_over_printed"].median()
         line = next(line for line in text.splitlines() if line.startswith(f"- **Drive `{drive}`"))
         assert float(line.split("omega_disr is ")[1].split(" ")[0]) == pytest.approx(found, rel=2e-3)
 

@@ -124,7 +124,7 @@ rule redraw_common_figure:
         "../scripts/figure{wildcards.number}.py"
 
 
-# What the paper does not have: the bound beside Table 3, fragments, checks of the validation.
+# What the paper does not have: both drives and bounds beside Table 3, fragments, checks of the validation.
 rule redraw_argument:
     input:
         DATA.files,

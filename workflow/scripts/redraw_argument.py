@@ -11,6 +11,7 @@ from ratd.validation.show import lammps, literal
 with Job(snakemake) as job:
     data = Data(job.settings["folder"])
     draw = {
+        "overview": lambda: figures.overview(data.grown, data.tables, data.plan.materials),
         "bound": lambda: figures.bound(data.grown, data.tables, data.plan.materials),
         "fragments": lambda: figures.fragments(data.fragments),
         "calibration": lambda: calibration(data.calibration.to_dataframe(), data.calibration),

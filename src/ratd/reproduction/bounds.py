@@ -102,8 +102,8 @@ def ratios(table, materials=None):
     -------
     pandas.DataFrame
         `printed_over_bound`, `strength_over_bound`, `found_over_bound`: omega of `table3_omega`, of `strength_omega`
-        and omega_disr, each over the cut bound of the same grain. `printed_over_found`, and `printed_over_firm` where
-        the table has a firm bound: the first of these over omega_disr and over the firm bound.
+        and omega_disr, each over the cut bound of the same grain. `found_over_printed`: omega_disr over the first of
+        these. `printed_over_firm`, where the table has a firm bound: the first of these over it.
     """
     printed = table3_omega(table, materials)
     firm = {"printed_over_firm": printed / table["firm_bound"]} if "firm_bound" in table else {}
@@ -112,7 +112,7 @@ def ratios(table, materials=None):
         printed_over_bound=printed / table["cut_bound"],
         strength_over_bound=strength_omega(table, materials) / table["cut_bound"],
         found_over_bound=table["omega_disr"] / table["cut_bound"],
-        printed_over_found=printed / table["omega_disr"],
+        found_over_printed=table["omega_disr"] / printed,
     )
 
 

@@ -3,6 +3,16 @@
 from ratd.reproduction.figures import LEAST
 
 CAPTIONS = {
+    "overview": (
+        "The result in one picture: angular velocities over those of the paper for the same grain (Eq. 33 with A and "
+        "alpha as printed in Table 3), against size, a panel a type. Circles and squares: omega_disr of the grains "
+        "that the drives prescribed and literal spun up; open triangles: the firm bound of all grown grains, above "
+        "which their contacts cannot hold them as they stand. Each is a median over all materials, which have the same "
+        "weight; bars hold the middle two thirds of the grains. The dashed line is the paper.\n\n"
+        "What to see: how far circles and triangles lie below the line, most of all for large BA grains, and that the "
+        "squares lie about it and rise: the one free number of their drive, which sets their level, was fixed on one "
+        "cell of the paper. Circles of BA above the triangles belong to remnants, which hold more than the whole grain."
+    ),
     "bound": (
         "Angular velocities over the cut bound of the same grain, against size, a panel a type. Diamonds: Eq. 33 "
         "with A and alpha as printed in Table 3; triangles upside down: where the mean tension at the mid-plane is the "

@@ -133,7 +133,7 @@ class Data:
     @property
     def further_figures(self):
         """Names of the figures that the paper does not have, as far as there are data for them, list of str."""
-        names = ["bound"] if self.drives else []
+        names = ["overview", "bound"] if self.drives else []
         if any(self.has(f"fragments/{drive}.nc") for drive in self.drives):
             names.append("fragments")
         if not self.drives:

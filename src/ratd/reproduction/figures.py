@@ -19,7 +19,7 @@ from ratd.figures.style import (
     type_style,
 )
 from ratd.fragmentation import STAGES
-from ratd.reproduction.bounds import ratios
+from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.statistics import median_of, quantiles
 
 # not the colours of the types
@@ -41,6 +41,33 @@ OMEGA_DISR = r"$\omega_\mathrm{disr}$"
 
 
 @styled
+def overview(grown, tables, materials=None):
+    """Angular velocities over those of the paper for the same grain against size, a panel a type.
+
+    Parameters
+    ----------
+    grown : pandas.DataFrame
+        The grown grains, for what needs no spin-up.
+    tables : dict of str to pandas.DataFrame
+        Drive -> its grains.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Medians as in `bound`, over Eq. 33 with Table 3: omega_disr of each drive, and the firm bound where it is known.
+    """
+    series = _of_drives(tables, materials, "found_over_printed")
+    firm = grown.get("firm_bound", np.nan) / table3_omega(grown, materials)
+    series += _where_known(grown.assign(firm_over_printed=firm), "firm_over_printed", FIRM_LOOK, "firm bound")
+    title = "angular velocities over those of the paper, for the same grain"
+    return _against_size(
+        series, title, r"$\omega$ over Eq. 33 with Table 3", "the paper: Eq. 33 with Table 3 as printed"
+    )
+
+
+@styled
 def bound(grown, tables, materials=None):
     """Angular velocities over the cut bound of the same grain against size, a panel a type.
 
@@ -59,19 +86,48 @@ def bound(grown, tables, materials=None):
         Medians over all materials, each with the same weight, with the range of 68 %: Eq. 33 with Table 3, the tensile
         strength, the firm bound where it is known, and omega_disr of each drive.
     """
-    tables = {drive: ratios(table, materials) for drive, table in tables.items()}
     first = ratios(grown, materials).assign(firm_over_bound=grown.get("firm_bound", np.nan) / grown["cut_bound"])
-    types = list(dict.fromkeys(first["type"]))
-    figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, "angular velocities over the cut bound of the same grain")
-    panels = figure.subplots(1, len(types), sharex=True, sharey=True, squeeze=False)[0]
     series = [(first, "printed_over_bound", PRINTED_LOOK, "Eq. 33 with Table 3 as printed")]
     series.append((first, "strength_over_bound", STRENGTH_LOOK, "tensile strength, Tatsuuma et al. 2019"))
-    if first["firm_over_bound"].notna().any():
-        series.append((first, "firm_over_bound", FIRM_LOOK, "firm bound"))
-    series += [
-        (table, "found_over_bound", DRIVE_LOOK.get(drive, {}), rf"$\omega_\mathrm{{disr}}$, drive: {drive}")
+    series += _where_known(first, "firm_over_bound", FIRM_LOOK, "firm bound")
+    series += _of_drives(tables, materials, "found_over_bound")
+    title = "angular velocities over the cut bound of the same grain"
+    return _against_size(series, title, r"$\omega$ over the cut bound", "cut bound")
+
+
+def _of_drives(tables, materials, column):
+    """A series a drive, of a column of `ratd.reproduction.bounds.ratios`; see `_against_size`."""
+    return [
+        (ratios(table, materials), column, DRIVE_LOOK.get(drive, {}), rf"$\omega_\mathrm{{disr}}$, drive: {drive}")
         for drive, table in tables.items()
     ]
+
+
+def _where_known(table, column, look, text):
+    """The series, in a list, or none where no grain has a value."""
+    return [(table, column, look, text)] if table[column].notna().any() else []
+
+
+def _against_size(series, title, label, one):
+    """Ratios against size, a panel a type.
+
+    Parameters
+    ----------
+    series : list of (pandas.DataFrame, str, dict, str)
+        Grains, the column that is drawn, its look and its name.
+    title, label : str
+        Of the figure and of the ratios.
+    one : str
+        Name of the line at 1, what the ratios are over.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    every = pd.concat([table[["type", "a_eff"]] for table, *_ in series])
+    types = list(dict.fromkeys(every["type"]))
+    figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, title)
+    panels = figure.subplots(1, len(types), sharex=True, sharey=True, squeeze=False)[0]
     for axes, kind in zip(panels, types, strict=True):
         axes.set_title(kind)
         axes.set_yscale("log")
@@ -79,11 +135,11 @@ def bound(grown, tables, materials=None):
         axes.axhline(1.0, color="black", lw=0.6, ls="--")
         for table, column, look, _ in series:
             _medians(axes, table[table["type"] == kind], column, look)
-    panels[0].set_xlim(*nanometres(size_limits(first["a_eff"])))
+    panels[0].set_xlim(*nanometres(size_limits(every["a_eff"])))
     logarithmic(panels[0].yaxis)
-    panels[0].set_ylabel(r"$\omega$ over the cut bound")
+    panels[0].set_ylabel(label)
     handles = [Line2D([], [], label=text, lw=0.8, ms=3.5, **look) for *_, look, text in series]
-    handles.append(Line2D([], [], color="black", lw=0.6, ls="--", label="cut bound"))
+    handles.append(Line2D([], [], color="black", lw=0.6, ls="--", label=one))
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 

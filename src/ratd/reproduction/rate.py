@@ -58,10 +58,10 @@ def calibration_section(data):
         rows = []
         for name, part in table.groupby("material", sort=False):
             levels = [
-                f"{kind} {median_and_range(own, 1 / own['printed_over_found'])}"
+                f"{kind} {median_and_range(own, own['found_over_printed'])}"
                 for kind, own in part.groupby("type", sort=False)
             ]
-            printed = part.assign(printed=part["printed_over_found"] * part["omega_disr"])
+            printed = part.assign(printed=table3_omega(part, data.plan.materials))
             rows.append([name, "; ".join(levels), _order(printed, "omega_disr"), _order(printed, "printed")])
         parts.append(markdown_table(["material", "omega_disr over Table 3", "order of the types", "in Table 3"], rows))
         parts.append(
@@ -214,7 +214,7 @@ def solid_parts(data):
                     name,
                     kind,
                     sizes,
-                    median_and_range(own, 1 / own["printed_over_found"]),
+                    median_and_range(own, own["found_over_printed"]),
                     with_error(slope, error),
                     number(printed),
                 ]

@@ -10,7 +10,7 @@ from ratd.reproduction.bounds import sizes_of, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
-from ratd.reproduction.summary import summary
+from ratd.reproduction.summary import answer, summary
 from ratd.reproduction.table3 import table3_section
 from ratd.reproduction.text import number, row_table
 from ratd.spinup import FIRST_LOSS
@@ -92,6 +92,8 @@ def report(data, pictures, captions=None):
     parts = [
         _introduction(data),
         "## In short",
+        *answer(data),
+        *_further(data, "overview", pictures),
         summary(data, rows),
         "## Which grains",
         _coverage(data),

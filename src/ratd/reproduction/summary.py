@@ -41,13 +41,11 @@ def summary(data, rows):
     str
     """
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
-    grown_ratios = ratios(data.grown, data.plan.materials)
-    lines = [_answer(data, tables, grown_ratios)] if len(tables) > 1 else []
-    lines += [_bound(grown_ratios), *_lammps(data), *pair_test.in_short(data)]
+    lines = [_bound(ratios(data.grown, data.plan.materials)), *_lammps(data), *pair_test.in_short(data)]
     for drive, table in tables.items():
         lines.append(_level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive) + _before(table))
     calibrated = calibrated_grains(data)
-    if calibrated is not None and calibrated["printed_over_found"].notna().any():
+    if calibrated is not None and calibrated["found_over_printed"].notna().any():
         name = (
             f"Drive `literal` at exactly the calibrated {number(data.calibration['calibrated'].item())} rad/s², not "
             "run, but predicted for a solid grain from the grains of `prescribed` (What the literal drive does)"
@@ -66,18 +64,33 @@ def summary(data, rows):
     return "\n\n".join(["\n".join(f"- {line}" for line in lines if line), _flattening(data)])
 
 
-def _answer(data, tables, grown_ratios):
-    """What it comes to, for someone who reads no further."""
-    count, known, _ = printed_above(grown_ratios, "printed_over_firm")
+def answer(data):
+    """What it comes to, for someone who reads no further.
+
+    Parameters
+    ----------
+    data : ratd.reproduction.data.Data
+
+    Returns
+    -------
+    list of str
+        A paragraph of Markdown; none where a drive is missing.
+    """
+    if len(data.tables) < 2:
+        return []
+    count, known, _ = printed_above(ratios(data.grown, data.plan.materials), "printed_over_firm")
     held = (
         "; what the contacts of a grain as grown can bear at most lies below the printed value for nearly all of them"
         if count > NEARLY_ALL * known
         else ""
     )
-    level = {drive: number(_over_printed(table)["median"]) for drive, table in tables.items()}
+    level = {
+        drive: number(_over_printed(ratios(table, data.plan.materials))["median"])
+        for drive, table in data.tables.items()
+    }
     study = data.study("literal")
     exact = "" if study is None else f", {between(*literal.exact_over_consistent(study))} times in small ones"
-    return (
+    return [
         "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart well below the printed "
         f"omega_disr, at {level['prescribed']} times it in the median, and the farther below it the larger it is"
         f"{held}. Another code lets small grains part where this one does. The equations as printed (`literal`) have "
@@ -86,7 +99,7 @@ def _answer(data, tables, grown_ratios):
         f"of the consistent model{exact}. With it late and d omega/dt fixed on Fig. 4, omega_disr lies at "
         f"{level['literal']} times the printed one in the median, the level of the cell of Fig. 4 by construction, and "
         "falls less with size than Table 3."
-    )
+    ]
 
 
 def _verdicts(rows, drives):
@@ -138,7 +151,7 @@ def _level(name, table):
     found = _over_printed(table)
     sizes, shown = size_key(table["a_eff"]), shown_sizes(table)
     sides = ", ".join(f"{sizes_of(part)} {number(_over_printed(part)['median'])}" for part in split_sizes(table))
-    own_radius = np.sqrt(table["mean_monomer_radius"] / PAPER_MEAN_RADIUS) / table["printed_over_found"]
+    own_radius = table["found_over_printed"] * np.sqrt(table["mean_monomer_radius"] / PAPER_MEAN_RADIUS)
     own = median_of(own_radius, cell=cell_of(table))["median"]
     by_type = [
         f"{kind} {' → '.join(number(_over_printed(part[sizes[part.index] == size])['median']) for size in shown)}"
@@ -154,7 +167,7 @@ def _level(name, table):
 
 def _over_printed(part):
     """omega_disr over Eq. 33 with the printed Table 3, see `ratd.statistics.median_of`; all cells count alike."""
-    return median_of(1 / part["printed_over_found"], cell=cell_of(part))
+    return median_of(part["found_over_printed"], cell=cell_of(part))
 
 
 def _before(table):
