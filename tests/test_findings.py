@@ -1,5 +1,6 @@
 """Rows of the reproduction on made-up runs, tables and grains with known answers."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -135,36 +136,67 @@ def test_longest_viscous_time_is_set_beside_the_shortest_of_the_same_grain():
     assert disrupted._viscous_rise(table.assign(omega_disr=level / times), None).holds is False
 
 
+def equal_monomers(kind, migration, level, rng):
+    """Rows of aggregates of equal monomers, whose porosity rises with their number."""
+    return [
+        {"study": "aggregates", "type": kind, "migration": migration, "n_monomers": n,
+         "porosity": level + 0.05 * np.log(n) + rng.normal(0, 0.01)}
+        for n in (32, 128, 512, 2048) for _ in range(30)
+    ]  # fmt: skip
+
+
 def test_porosity_is_compared_with_that_of_equal_monomers_of_the_same_number():
     rng = np.random.default_rng(4)
-    rows = [
-        {"study": "aggregates", "type": kind, "n_monomers": n, "porosity": 0.3 + 0.05 * np.log(n) + rng.normal(0, 0.01),
-         "a_eff": 1e-7, "migration": "nearest"}
-        for kind in ("BAM1", "BAM2") for n in (32, 128, 512) for _ in range(30)
-    ]  # fmt: skip
+    growth = pd.DataFrame(
+        row
+        for kind in ("BAM1", "BAM2")
+        for migration, level in (("random", 0.3), ("nearest", 0.9))
+        for row in equal_monomers(kind, migration, level, rng)
+    )
+    numbers = {1e-7: 12, 2e-7: 120, 3.5e-7: 640, 5e-7: 1900, 5.5e-7: 2500}  # the first and the last are not covered
     for less in (0.1, -0.1):
-        own = [
-            {"study": "grains", "type": kind, "n_monomers": n, "porosity": 0.3 + 0.05 * np.log(n) - less, "a_eff": size,
-             "migration": "nearest"}
-            for kind in ("BAM1", "BAM2") for size, n in ((2e-7, 120), (3.5e-7, 640), (5e-7, 2000)) for _ in range(20)
+        grown = pd.DataFrame(
+            {"type": kind, "n_monomers": n, "porosity": 0.3 + 0.05 * np.log(n) - less + rng.normal(0, 0.01), "a_eff": a}
+            for kind in ("BAM1", "BAM2")
+            for a, n in numbers.items()
+            for _ in range(20)
+        )
+        answer = structure._compact(growth, "random", grown).answers[""]
+        assert answer.holds is (less > 0) and answer.text.count("(200 nm)") == answer.text.count("(500 nm)") == 2
+        assert "(100 nm)" not in answer.text and "(550 nm)" not in answer.text
+        assert [float(word) for word in re.findall(r"(-?0\.\d+) ±", answer.text)] == pytest.approx(
+            [-less] * 4, abs=0.01
+        )
+    assert structure._compact(None, "random", grown).answers == {}
+    assert structure._compact(growth, "random", grown[grown["a_eff"] < 2e-7]).answers == {}
+
+
+def test_error_of_the_porosity_less_that_of_equal_monomers_has_both_parts():
+    """Halfway between two points of the curve, each of which counts half."""
+    curve = pd.DataFrame({"mean": [0.4, 0.6, 0.7], "sem": [0.03, 0.04, 9.0]}, index=[16, 64, 256])
+    grains = pd.DataFrame({"n_monomers": 32, "porosity": [0.41, 0.43]})
+    assert structure._less(grains, curve) == pytest.approx((-0.08, np.hypot(0.01, np.hypot(0.015, 0.02))))
+
+
+def test_depth_of_small_monomers_is_compared_with_that_of_grains_that_do_not_migrate():
+    rng = np.random.default_rng(5)
+
+    def rows(kind, migration, mean):
+        return [
+            {"study": "grains", "type": kind, "migration": migration, "a_eff": a, "depth_correlation": value}
+            for a in (2e-7, 5e-7) for value in rng.normal(mean, 0.05, 50)
         ]  # fmt: skip
-        answer = structure._compact(pd.DataFrame(rows + own)).answers[""]
-        assert answer.holds is (less > 0) and "(350 nm)" in answer.text and "(500 nm)" not in answer.text
-    assert structure._compact(None).answers == {} and structure._compact(pd.DataFrame(own)).answers == {}
+
+    for more in (0.1, -0.1):
+        bam = [row for kind in ("BAM1", "BAM2") for row in rows(kind, "random", 0.2 + more) + rows(kind, "nearest", 0)]
+        table = pd.DataFrame(rows("BA", "none", 0.2) + bam)
+        answer = structure._deeper(table, "random").answers[""]
+        assert answer.holds is (more > 0) and answer.text.count("(200 nm)") == answer.text.count("(500 nm)") == 2
+    assert structure._deeper(None, "random").answers == {}
+    assert structure._deeper(table[table["type"] != "BA"], "random").answers == {}
 
 
-def test_depth_and_fractal_dimension_are_compared_by_rank():
-    radius = np.sort(np.random.default_rng(5).uniform(10e-9, 60e-9, 60))
-    for far, deeper in ((np.arange(60.0), True), (np.arange(60.0, 0, -1), False)):
-        place = np.zeros((60, 3))
-        place[:, 0] = far * np.where(np.arange(60) % 2, 1, -1)  # to both sides of the centre of mass by turns
-        grain = SimpleNamespace(position=place, radius=radius, type="BAM1")
-        mixed = [SimpleNamespace(position=place, radius=np.roll(radius, 7 * k), type="BA") for k in range(3, 6)]
-        assert structure._deeper([grain] * 3 + mixed).answers[""].holds is deeper
-    assert structure._deeper([]).answers == {}
-    x = np.random.default_rng(6).normal(size=200)
-    assert structure._rank_correlation(x, np.exp(x)) == pytest.approx(1)
-    assert structure._rank_correlation(x, -(x**3)) == pytest.approx(-1)
+def test_fractal_dimension_is_compared_with_the_shape_by_rank():
     table = make_table(sizes=(100e-9, 200e-9, 300e-9), seeds=40).assign(axis_a=1.0)
     rng = np.random.default_rng(7)
     free = table.assign(axis_c=rng.uniform(1, 2, len(table)), fractal_dimension=rng.uniform(2, 3, len(table)))

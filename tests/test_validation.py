@@ -2,6 +2,7 @@
 
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -18,7 +19,7 @@ from ratd.materials import MATERIALS
 from ratd.provenance import provenance
 from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
-from ratd.statistics import median_of
+from ratd.statistics import mean_of, median_of
 from ratd.validation import (
     convergence,
     energy,
@@ -266,10 +267,29 @@ def test_theory(tmp_path):
 
 def test_growth():
     rows = growth.compute({"material": "q-S", "type": "BAM2", "monomers": 32, "seeds": 8})
-    assert np.mean([row["porosity"] for row in rows]) == pytest.approx(0.46, abs=0.04)
+    assert [row["migration"] for row in rows] == ["random"] * 8 + ["nearest"] * 8
+    assert np.mean([row["porosity"] for row in rows[8:]]) == pytest.approx(0.46, abs=0.04)
     assert all(row["n_contacts"] >= 3 * 32 - 6 for row in rows)
     assert all(row["square_x"] + row["square_y"] + row["square_z"] == pytest.approx(1.0) for row in rows)
-    assert "0.46 ± 0.01" in works(show_growth, rows)
+    text = works(show_growth, rows)
+    value, error = mean_of([row["porosity"] for row in rows[8:]])  # those that the independent generator has
+    assert f"| BAM2 | 32 | 8 | {measured(value, error)} | 0.46 ± 0.01 |" in text
+    assert "| BAM2 | 16 |" not in works(show_growth, rows + [row | {"n_monomers": 16} for row in rows])
+
+
+def test_the_depth_of_monomers_is_told_by_their_ranks():
+    radius = np.sort(np.random.default_rng(5).uniform(10e-9, 60e-9, 60))
+    side = np.where(np.arange(60) % 2, 1, -1)  # to both sides of the centre of mass by turns
+    place = np.outer(np.arange(60.0) * side, [1.0, 0.0, 0.0])
+    outside = SimpleNamespace(position=place, radius=radius)
+    assert growth.depth_correlation(outside) > 0.99
+    moved = SimpleNamespace(position=place + [5.0, -3.0, 2.0], radius=radius)
+    assert growth.depth_correlation(moved) == pytest.approx(growth.depth_correlation(outside))
+    assert growth.depth_correlation(SimpleNamespace(position=place, radius=radius[::-1])) < -0.9
+    rows = growth.compute({"material": "q-S", "type": "BA", "a_eff": 150e-9, "seeds": 2})
+    assert [(row["migration"], row["seed"]) for row in rows] == [("none", 0), ("none", 1)]
+    own = grow("BA", 150e-9, "q-S", 1)
+    assert rows[1]["porosity"] == own.shape.porosity and rows[1]["depth_correlation"] == growth.depth_correlation(own)
 
 
 def test_both_ways_to_migrate_stand_beside_the_printed_radius():

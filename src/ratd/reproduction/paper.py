@@ -105,7 +105,7 @@ _GROWN = {
         "Sect. 8",
         "rank correlation of a monomer's radius with its distance from the centre of mass, BAM less BA",
         "“smaller monomer tend to migrate deeper”",
-        "above 0, both types",
+        "above 0 at each size, both types",
     ),
     "fractal_shape": Printed(
         "Sect. 7.3, Fig. 2",

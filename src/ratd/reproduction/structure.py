@@ -6,78 +6,89 @@ from ratd.ensemble import size_key
 from ratd.reproduction.bounds import PM
 from ratd.reproduction.course import BAM
 from ratd.reproduction.text import Answer, Row, all_of, lies_between, lies_in, number, with_error
-from ratd.statistics import mean_of
+from ratd.statistics import mean_of, rank_correlation
 from ratd.units import NM
+from ratd.validation.growth import NOT
 
 CORRELATED = 0.3
 """Rank correlation from which on two things are well correlated."""
-BEYOND = 1.5
-"""Factor in the number of monomers to which the curve of aggregates of equal ones is continued."""
 FEWEST = 10
 """Grains of a size below which nothing is said of it."""
 
 
 def rows(data):
     """Rows of the structure, list of Row."""
-    return [_compact(data.study("growth")), _deeper(data.grains), _fractal_shape(data.grown)]
+    growth, migration = data.study("growth"), data.plan.config["growth"]["migration"]
+    return [_compact(growth, migration, data.grown), _deeper(growth, migration), _fractal_shape(data.grown)]
 
 
-def _compact(table):
-    """Porosity of grains with the radii of the ensemble, less that of as many equal monomers."""
-    if table is None:
+def _compact(growth, migration, grown):
+    """Porosity of the grown BAM grains, less that of as many equal monomers that migrated alike."""
+    if growth is None:
         return Row("compact")
-    table = table[(table["migration"] == "nearest") & table["type"].isin(BAM)]
+    equal = growth[(growth["study"] == "aggregates") & (growth["migration"] == migration)]
     parts, verdicts = [], []
-    for kind, own in table.groupby("type", sort=False):
-        equal, grains = (own[own["study"] == study] for study in ("aggregates", "grains"))
-        if equal["n_monomers"].nunique() < 3:
-            continue
-        scatter = equal.groupby("n_monomers")["porosity"].transform("std")
-        curve, covariance = np.polyfit(np.log(equal["n_monomers"]), equal["porosity"], 2, w=1 / scatter, cov="unscaled")
-        grains = grains[grains["n_monomers"].between(equal["n_monomers"].min(), BEYOND * equal["n_monomers"].max())]
-        told = []
-        for size, part in grains.groupby(size_key(grains["a_eff"])):
-            if len(part) < FEWEST:
-                continue
-            place = np.vander(np.log(part["n_monomers"]), 3)
-            less, mean = part["porosity"] - place @ curve, place.mean(axis=0)
-            value = less.mean(), np.hypot(less.sem(), np.sqrt(mean @ covariance @ mean))
-            told.append(f"{with_error(*value)} ({size * PM / NM:g} nm)")
-            verdicts.append(lies_between(*value, high=0.0))
-        parts.append(f"{kind} {', '.join(told)}")
+    for kind in BAM:
+        curve = equal[equal["type"] == kind].groupby("n_monomers")["porosity"].agg(["mean", "sem"])
+        told = {}
+        for size, part in grown[grown["type"] == kind].groupby(size_key(grown["a_eff"])):
+            inside = part["n_monomers"].between(curve.index.min(), curve.index.max())
+            if inside.all() and len(part) >= FEWEST:
+                told[size] = _less(part, curve)
+        if told:
+            parts.append(f"{kind} {', '.join(f'{with_error(*told[s])} ({s * PM / NM:g} nm)' for s in _ends(told))}")
+        verdicts += [lies_between(*value, high=0.0) for value in told.values()]
     reason = (
-        "Grains like those of Fig. 1, but not of the ensemble, against a parabola in ln N_mon through aggregates of "
-        "equal monomers (docs/validation.md, Growth), as far as these go; all migrate to the nearest place."
+        "The ensemble as grown, the smallest and the greatest size of whose grains all have as many monomers as some "
+        "aggregates of equal ones (docs/validation.md, Growth), between which the logarithm of the number is "
+        "interpolated; the verdict counts the sizes between as well."
     )
     return Row("compact", {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}, reason)
 
 
-def _deeper(grains):
-    """Whether smaller monomers lie deeper in the BAM grains of Fig. 1 than in its BA grains, which do not migrate."""
-    found = {}
-    for grain in grains:
-        found.setdefault(grain.type, []).append(_rank_correlation(grain.radius, _depth(grain)))
-    means = {kind: mean_of(values) for kind, values in found.items()}
+def _ends(values):
+    """Least and greatest key."""
+    return dict.fromkeys([min(values), max(values)])
+
+
+def _less(grains, curve):
+    """Mean porosity of grains less that of a curve at as many monomers, and its standard error.
+
+    Parameters
+    ----------
+    grains : pandas.DataFrame
+    curve : pandas.DataFrame
+        Number of monomers -> mean porosity and its standard error, straight against the logarithm between.
+    """
+    at = np.log(curve.index)
+    # how much each point of the curve counts in the interpolated porosity of each grain
+    share = np.column_stack([np.interp(np.log(grains["n_monomers"]), at, unit) for unit in np.eye(len(at))])
+    less = grains["porosity"] - share @ curve["mean"].to_numpy()
+    return less.mean(), float(np.hypot(less.sem(), np.linalg.norm(share.mean(axis=0) * curve["sem"])))
+
+
+def _deeper(growth, migration):
+    """Whether smaller monomers lie deeper in BAM grains than in BA grains, which do not migrate."""
+    if growth is None:
+        return Row("deeper")
+    own = growth[(growth["study"] == "grains") & growth["migration"].isin([migration, NOT])]
+    found = {key: mean_of(part) for key, part in own.groupby(["type", size_key(own["a_eff"])])["depth_correlation"]}
     parts, verdicts = [], []
     for kind in BAM:
-        if {"BA", kind} <= set(means):
-            value = means[kind][0] - means["BA"][0], np.hypot(means[kind][1], means["BA"][1])
-            parts.append(f"{kind} {with_error(*value)}")
+        told = []
+        for size in sorted(size for other, size in found if other == kind and ("BA", size) in found):
+            (mean, error), (plain, plain_error) = found[kind, size], found["BA", size]
+            value = mean - plain, np.hypot(error, plain_error)
+            told.append(f"{with_error(*value)} ({size * PM / NM:g} nm)")
             verdicts.append(lies_between(*value, low=0.0))
-    answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if parts else {}
-    all_types = ", ".join(f"{kind} {number(mean)}" for kind, (mean, _) in means.items())
-    return Row("deeper", answers, f"Grains of Fig. 1, ± from how they differ. The correlation itself is {all_types}.")
-
-
-def _depth(grain):
-    """Distance of each monomer from the centre of mass [m], shape (n,)."""
-    centre = np.average(grain.position, axis=0, weights=grain.radius**3)
-    return np.linalg.norm(grain.position - centre, axis=1)
-
-
-def _rank_correlation(x, y):
-    """Spearman's correlation of two samples of equal length, without regard to ties."""
-    return float(np.corrcoef(np.argsort(np.argsort(x)), np.argsort(np.argsort(y)))[0, 1])
+        parts += [f"{kind} {', '.join(told)}"] if told else []
+    answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}
+    plain = ", ".join(
+        f"{number(mean)} ({size * PM / NM:g} nm)" for (kind, size), (mean, _) in found.items() if kind == "BA"
+    )
+    return Row(
+        "deeper", answers, f"Grains that are grown as those of the ensemble. The correlation itself is {plain} in BA."
+    )
 
 
 def _fractal_shape(table):
@@ -88,7 +99,7 @@ def _fractal_shape(table):
         sizes = [part for _, part in own.groupby(size_key(own["a_eff"])) if len(part) >= FEWEST]
         if len(sizes) < 2:
             continue
-        found = [_rank_correlation(part["fractal_dimension"], part["axis_c"] / part["axis_a"]) for part in sizes]
+        found = [rank_correlation(part["fractal_dimension"], part["axis_c"] / part["axis_a"]) for part in sizes]
         value = mean_of(found)
         parts.append(f"{kind} {with_error(*value)}")
         verdicts.append(lies_in(*value, -CORRELATED, CORRELATED))

@@ -1,5 +1,7 @@
 """Growth: aggregates of equal monomers against an independent generator, isotropy, and the two ways to migrate.
 
+Where the small monomers of a grain with the radii of the ensemble lie is measured along with its form.
+
 Arrivals: the second monomer of many pairs comes in alone on the first, so that its straight line is known from its
 place and its direction. Directions and places should be uniform over the sphere, squared impact parameters uniform up
 to that of a grazing hit.
@@ -8,16 +10,19 @@ to that of a grazing hit.
 import numpy as np
 
 from ratd import growth
-from ratd.growth import MIGRATIONS, grow, grow_with_radii
+from ratd.growth import MIGRATIONS, TYPES, grow, grow_with_radii
 from ratd.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.statistics import rank_correlation
 from ratd.validation.tables import table_kind
 
 MONOMER_RADIUS = 20e-9
 """Any will do: the form of aggregates of equal monomers depends on it by the compression of the contacts only."""
+NOT = "none"
+"""Stands for the migration of BA grains, whose monomers stay where they hit."""
 COLUMNS = {
     "study": ("", "aggregates: of equal monomers; grains: as in the ensemble; arrivals: one monomer on another"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
-    "migration": ("", "where a monomer rolls to"),
+    "migration": ("", "where a monomer rolls to, or none"),
     "n_monomers": ("1", "monomers"),
     "seed": ("1", "seed of the aggregate"),
     "n_contacts": ("1", "contacts"),
@@ -25,6 +30,7 @@ COLUMNS = {
     "enclosing_radius": ("m", "radius of the smallest sphere around all monomers"),
     "a_eff": ("m", "effective radius"),
     "fractal_dimension": ("1", "D_f, Eq. 8"),
+    "depth_correlation": ("1", "rank correlation of the radius of a monomer with its distance from the centre of mass"),
     "square_x": ("1", "mean square of the x component of the directions of the contacts"),
     "square_y": ("1", "mean square of the y component of the directions of the contacts"),
     "square_z": ("1", "mean square of the z component of the directions of the contacts"),
@@ -128,23 +134,46 @@ def arrivals(settings):
 
 
 def aggregates(settings):
-    """Rows of `COLUMNS`, one an aggregate that migrates to the nearest place."""
-    rows = []
-    for seed in range(settings["seeds"]):
-        radius = np.full(settings["monomers"], MONOMER_RADIUS)
-        grain = grow_with_radii(settings["type"], radius, settings["material"], seed, migration="nearest")
-        rows.append(_row("aggregates", grain, settings["type"], seed, "nearest"))
-    return rows
+    """Rows of `COLUMNS`, one an aggregate of equal monomers, grown with each of `ways`."""
+    kind, material = settings["type"], settings["material"]
+    radius = np.full(settings["monomers"], MONOMER_RADIUS)
+    return [
+        _row("aggregates", grow_with_radii(kind, radius, material, seed, **how), kind, seed, migration)
+        for migration, how in ways(kind).items()
+        for seed in range(settings["seeds"])
+    ]
 
 
 def grains(settings):
-    """Rows of `COLUMNS`, one a grain with the radii of the ensemble, grown with each of `ratd.growth.MIGRATIONS`."""
+    """Rows of `COLUMNS`, one a grain with the radii of the ensemble, grown with each of `ways`."""
     kind, a_eff, material = (settings[name] for name in ("type", "a_eff", "material"))
-    return [
-        _row("grains", grow(kind, a_eff, material, seed, migration=migration), kind, seed, migration)
-        for migration in MIGRATIONS
-        for seed in range(settings["seeds"])
-    ]
+    rows = []
+    for migration, how in ways(kind).items():
+        for seed in range(settings["seeds"]):
+            grain = grow(kind, a_eff, material, seed, **how)
+            rows.append(_row("grains", grain, kind, seed, migration) | {"depth_correlation": depth_correlation(grain)})
+    return rows
+
+
+def ways(kind):
+    """How the monomers of a type migrate: name -> what growth has to be told, dict."""
+    return {NOT: {}} if not TYPES[kind] else {name: {"migration": name} for name in MIGRATIONS}
+
+
+def depth_correlation(grain):
+    """Spearman's rank correlation of the radius of a monomer with its distance from the centre of mass of the grain.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+
+    Returns
+    -------
+    float
+        Above 0 where the smaller monomers lie deeper.
+    """
+    centre = np.average(grain.position, axis=0, weights=grain.radius**3)
+    return rank_correlation(grain.radius, np.linalg.norm(grain.position - centre, axis=1))
 
 
 def _row(study, grain, kind, seed, migration):

@@ -120,12 +120,12 @@ class Plan:
             }
             for kind, number in product(("BA", "BAM1", "BAM2"), own["monomers"])
         }  # fmt: skip
-        migrating = own["migrations"]
+        grains = own["grains"]
         pieces |= {
             f"{kind}_{size}nm": {
-                "material": own["material"], "type": kind, "a_eff": size * NM, "seeds": migrating["seeds"]
+                "material": own["material"], "type": kind, "a_eff": size * NM, "seeds": grains["seeds"]
             }
-            for kind, size in product(migrating["types"], migrating["sizes_nm"])
+            for kind, size in product(grains["types"], grains["sizes_nm"])
         }  # fmt: skip
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 

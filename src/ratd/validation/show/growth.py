@@ -9,7 +9,7 @@ from ratd.reproduction.bounds import whole_nm
 from ratd.reproduction.paper import GRAINS, MOST, PRINTED
 from ratd.statistics import mean_of
 from ratd.units import NM
-from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY
+from ratd.validation.growth import EXPECTED_CONTACTS, EXPECTED_POROSITY, NOT
 
 LIMIT = 1.36
 """Greatest deviation of a cumulative distribution times sqrt(n) that 95 % of all samples of size n stay below."""
@@ -48,14 +48,16 @@ def draw(table):
     """
     figure = new_figure(TWO_COLUMNS, 0.45 * TWO_COLUMNS, "aggregates of equal monomers (as grown, no drive)")
     axes, right = figure.subplots(1, 2)
-    for kind, part in table[table["study"] == "aggregates"].groupby("type"):
+    for (kind, migration), part in table[table["study"] == "aggregates"].groupby(["type", "migration"]):
         colour = TYPE_COLOUR.get(kind, "black")
-        numbers = sorted(set(part["n_monomers"]))
-        points = [mean_of(part["porosity"][part["n_monomers"] == n]) for n in numbers]
+        points = {n: mean_of(own) for n, own in part.groupby("n_monomers")["porosity"]}
+        face = {"mfc": "white", "mew": 0.7} if migration == "random" else {}
         axes.errorbar(
-            numbers, [p[0] for p in points], [p[1] for p in points],
-            color=colour, marker=TYPE_MARKER.get(kind, "o"), ls="none", label=kind, elinewidth=0.8,
+            list(points), *zip(*points.values(), strict=True), color=colour, marker=TYPE_MARKER.get(kind, "o"),
+            ls="none", label=kind if migration == NOT else f"{kind} {migration}", elinewidth=0.8, **face,
         )  # fmt: skip
+        if migration == "random":
+            continue
         expected = [(n, value) for (name, n), value in EXPECTED_POROSITY.items() if name == kind]
         x, y = np.array(expected).T
         axes.fill_between(x, y - 0.01, y + 0.01, color=colour, alpha=0.25, lw=0)
@@ -105,7 +107,7 @@ def _tell_migrations(table):
     """Paragraphs on both ways to migrate, beside the enclosing radii of Fig. 1 and the porosities of Fig. 2."""
     rows, held = [], {}
     for (kind, nm, migration), part in table.groupby(["type", whole_nm(table), "migration"]):
-        if (kind, nm) not in GRAINS:
+        if (kind, nm) not in GRAINS or migration == NOT:
             continue
         printed, most = GRAINS[kind, nm][2], PRINTED[f"porosity_{kind}"].value[1]
         low, median, high = part["enclosing_radius"].quantile([MOST[0], 0.5, MOST[1]]) / NM
@@ -139,10 +141,13 @@ def _tell_migrations(table):
 def tell(table):
     """The section of the report, Markdown."""
     rows, values = [], uniform_values(table)
-    for (kind, n), part in table[table["study"] == "aggregates"].groupby(["type", "n_monomers"]):
+    aggregates = table[(table["study"] == "aggregates") & (table["migration"] != "random")]
+    for (kind, n), part in aggregates.groupby(["type", "n_monomers"]):
+        if (kind, int(n)) not in EXPECTED_POROSITY:
+            continue
         p, q = EXPECTED_CONTACTS[kind]
         value, error = mean_of(part["porosity"])
-        expected = EXPECTED_POROSITY.get((kind, int(n)), np.nan)
+        expected = EXPECTED_POROSITY[kind, int(n)]
         off = (value - expected) / np.hypot(error, 0.01)
         square = [measured(*mean_of(part[f"square_{axis}"])) for axis in "xyz"]
         rows.append(
@@ -162,6 +167,9 @@ def tell(table):
             "Means with standard errors over the aggregates. `off` is the difference of the porosities over both "
             "errors. For isotropic growth the mean squares of the components of the contacts' directions are 1/3 each.",
             markdown_table(header, rows),
+            "In the figure bands are the independent porosities, filled markers those of aggregates that grow like "
+            "these, and open ones those of aggregates that migrate in a random direction, as everywhere outside this "
+            "section.",
             *_tell_migrations(table[table["study"] == "grains"]),
             *([_tell_arrivals(values)] if len(values["place, z"]) else []),
         ]
