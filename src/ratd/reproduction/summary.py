@@ -40,10 +40,38 @@ def summary(data, rows):
     -------
     str
     """
+    differ = [
+        _bound(ratios(data.grown, data.plan.materials)),
+        *_lammps(data),
+        *pair_test.in_short(data),
+        *_strength(data),
+        *_formulae(data),
+    ]
+    parts = [
+        _listed("omega_disr beside the printed one", [*_levels(data), *_spin_up_rate(data), *_table3(data)]),
+        _flattening(data),
+        _listed("Why they differ", differ),
+        _listed("What the paper says, counted", [*_verdicts(rows, list(data.tables)), _composition(), *_grains(data)]),
+        _listed(
+            "What predicts omega_disr", [_prediction(drive, data.predictions[drive]["size"]) for drive in data.tables]
+        ),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _listed(head, lines):
+    """A part of the summary: its head and its lines; nothing without any."""
+    lines = [f"- {line}" for line in lines if line]
+    return f"### {head}\n\n" + "\n".join(lines) if lines else ""
+
+
+def _levels(data):
+    """omega_disr over the printed one, a line a drive, and one for the calibrated rate where that is known."""
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
-    lines = [_bound(ratios(data.grown, data.plan.materials)), *_lammps(data), *pair_test.in_short(data)]
-    for drive, table in tables.items():
-        lines.append(_level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive) + _before(table))
+    lines = [
+        _level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive) + _before(table)
+        for drive, table in tables.items()
+    ]
     calibrated = calibrated_grains(data)
     if calibrated is not None and calibrated["found_over_printed"].notna().any():
         name = (
@@ -51,17 +79,7 @@ def summary(data, rows):
             "run, but predicted for a solid grain from the grains of `prescribed` (What the literal drive does)"
         )
         lines.append(_level(name, calibrated))
-    lines += _spin_up_rate(data)
-    lines += [_prediction(drive, data.predictions[drive]["size"]) for drive in tables]
-    lines += [
-        *_strength(data),
-        *_formulae(data),
-        *_table3(data),
-        *_verdicts(rows, list(tables)),
-        _composition(),
-        *_grains(data),
-    ]
-    return "\n\n".join(["\n".join(f"- {line}" for line in lines if line), _flattening(data)])
+    return lines
 
 
 def answer(data):
@@ -266,7 +284,7 @@ def _prediction(drive, found):
     best = least_of(own)
     verdict = f"the least is that of {best}" if best else "which is the least is not decided"
     return (
-        f"**Prediction, drive `{drive}`**: for sizes left out of the fit the prediction of ln omega_disr is off by "
+        f"**Drive `{drive}`**: for sizes left out of the fit the prediction of ln omega_disr is off by "
         f"{', '.join(misses)}; {verdict}."
     )
 
