@@ -304,6 +304,18 @@ def test_means_of_the_document_are_those_of_the_table(folder, text):
         assert float(line.split("omega_disr is ")[1].split(" ")[0]) == pytest.approx(found, rel=2e-3)
 
 
+def test_the_answer_and_its_picture_stand_first(folder, text):
+    """The answer sets both drives beside each other, and is left out where one is missing."""
+    data = Data(str(folder), checks=NO_CHECKS)
+    first, second, *_ = text.split("## In short\n\n")[1].split("\n\n")
+    assert first.startswith("**The answer**") == (len(data.tables) == 2)
+    assert "![overview](reproduction/overview.png)" in (first, second) and "overview" in data.further_figures
+    if len(data.tables) == 2:
+        for drive, before in (("prescribed", "printed omega_disr, at "), ("literal", "omega_disr lies at ")):
+            found = ratios(data.tables[drive])["found_over_printed"].median()
+            assert float(first.split(before)[1].split(" ")[0]) == pytest.approx(found, rel=6e-3)
+
+
 def test_sections_without_data_say_so(text):
     for words in ("check against LAMMPS are not", "literal drive are not", "hold no fragments", "Fig. 4 is not"):
         assert words in text

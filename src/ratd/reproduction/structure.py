@@ -36,7 +36,8 @@ def _compact(growth, migration, grown):
             if inside.all() and len(part) >= FEWEST:
                 told[size] = _less(part, curve)
         if told:
-            parts.append(f"{kind} {', '.join(f'{with_error(*told[s])} ({s * PM / NM:g} nm)' for s in _ends(told))}")
+            ends = sorted({min(told), max(told)})
+            parts.append(f"{kind} {', '.join(f'{with_error(*told[size])} ({size * PM / NM:g} nm)' for size in ends)}")
         verdicts += [lies_between(*value, high=0.0) for value in told.values()]
     reason = (
         "The ensemble as grown, the smallest and the greatest size of whose grains all have as many monomers as some "
@@ -44,11 +45,6 @@ def _compact(growth, migration, grown):
         "interpolated; the verdict counts the sizes between as well."
     )
     return Row("compact", {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}, reason)
-
-
-def _ends(values):
-    """Least and greatest key."""
-    return dict.fromkeys([min(values), max(values)])
 
 
 def _less(grains, curve):
