@@ -181,19 +181,18 @@ def test_error_of_the_porosity_less_that_of_equal_monomers_has_both_parts():
 def test_depth_of_small_monomers_is_compared_with_that_of_grains_that_do_not_migrate():
     rng = np.random.default_rng(5)
 
-    def rows(kind, migration, mean):
+    def rows(kind, mean):
         return [
-            {"study": "grains", "type": kind, "migration": migration, "a_eff": a, "depth_correlation": value}
+            {"type": kind, "a_eff": a, "depth_correlation": value}
             for a in (2e-7, 5e-7) for value in rng.normal(mean, 0.05, 50)
         ]  # fmt: skip
 
     for more in (0.1, -0.1):
-        bam = [row for kind in ("BAM1", "BAM2") for row in rows(kind, "random", 0.2 + more) + rows(kind, "nearest", 0)]
-        table = pd.DataFrame(rows("BA", "none", 0.2) + bam)
-        answer = structure._deeper(table, "random").answers[""]
+        table = pd.DataFrame(rows("BA", 0.2) + rows("BAM1", 0.2 + more) + rows("BAM2", 0.2 + more))
+        answer = structure._deeper(table).answers[""]
         assert answer.holds is (more > 0) and answer.text.count("(200 nm)") == answer.text.count("(500 nm)") == 2
-    assert structure._deeper(None, "random").answers == {}
-    assert structure._deeper(table[table["type"] != "BA"], "random").answers == {}
+    assert structure._deeper(None).answers == {}
+    assert structure._deeper(table[table["type"] != "BA"]).answers == {}
 
 
 def test_fractal_dimension_is_compared_with_the_shape_by_rank():
@@ -203,3 +202,9 @@ def test_fractal_dimension_is_compared_with_the_shape_by_rank():
     assert structure._fractal_shape(free).answers[""].holds is True
     bound = free.assign(fractal_dimension=free["axis_c"] + table["a_eff"] * 1e9)
     assert structure._fractal_shape(bound).answers[""].holds is False
+    # a correlation that is not the same at all sizes, each of which is known well
+    link = np.where(np.isclose(table["a_eff"], 300e-9), 0.4, 0.0)
+    mixed = pd.concat(
+        [free.assign(fractal_dimension=rng.uniform(size=len(free)) + link * free["axis_c"]) for _ in range(30)]
+    )
+    assert structure._fractal_shape(mixed).answers[""].holds is True

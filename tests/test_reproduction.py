@@ -29,6 +29,7 @@ from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
 from ratd.shape import porosity, semi_axes
 from ratd.solid import solid_omega
+from ratd.validation import growth
 from ratd.validation.data import kind_of, table_path
 from ratd.validation.literal import COLUMNS as LITERAL_COLUMNS
 from ratd.validation.tables import write_table
@@ -335,6 +336,47 @@ def test_tables_of_the_validation_are_part_of_the_data(folder, tmp_path):
 def test_a_folder_without_config_has_nothing_to_draw(tmp_path):
     data = Data(str(tmp_path), checks=NO_CHECKS)
     assert data.files == data.drives == data.figures == data.further_figures == []
+
+
+def alike_table(grown, copies, migration="random"):
+    """Cases of the check of growth: grains with the values of some that were grown, `copies` of each."""
+    columns = ["type", "seed", "a_eff", "n_monomers", "porosity", "fractal_dimension", "axis_a", "axis_b", "axis_c"]
+    rows = growth.empty_row("grains") | {"material": "q-S", "depth_correlation": 0.1}
+    own = grown[columns].assign(**{name: value for name, value in rows.items() if name not in columns})
+    own["migration"] = own["type"].map({"BA": "none"}).fillna(migration)
+    return pd.concat([own] * copies, ignore_index=True)
+
+
+def test_grains_at_rest_are_those_of_the_check_of_growth_where_these_are_more(folder, tmp_path):
+    """Alike are those that migrate as the ensemble's; sizes that it does not have are left out."""
+    grown = Data(str(folder), checks=NO_CHECKS).grown
+    more = alike_table(grown, 4).assign(porosity=0.5)
+    other = more[more["type"] == "BAM1"].assign(migration="nearest")
+    larger = more[np.isclose(more["a_eff"], max(SIZES))].assign(a_eff=9e-7)
+    rows = pd.concat([more, other, larger]).to_dict("records")
+    write_table(table_path(tmp_path, "growth"), rows, kind_of("growth"), {})
+    data = Data(str(folder), checks=str(tmp_path))
+    assert len(data.alike) == len(more) + len(larger) and len(data.at_rest) == len(more)
+    text = report(data, "reproduction")
+    least = 4 * len(grown) // (3 * len(SIZES))
+    assert f"Said of {len(more)} grains, at least {least} of each type and size," in text and "all of q-S" in text
+    assert "what is said of them at rest" not in text and text.count("| 0.5 to 0.5 (single grains ") == 4
+    few = pd.concat([more, other])[lambda table: ~((table["type"] == "BA") & np.isclose(table["a_eff"], SIZES[0]))]
+    write_table(table_path(tmp_path, "growth"), few.to_dict("records"), kind_of("growth"), {})
+    data = Data(str(folder), checks=str(tmp_path))
+    assert data.at_rest is data.grown and "and what is said of them at rest, is said of all" in report(
+        data, "reproduction"
+    )
+
+
+@pytest.mark.parametrize(("key", "value"), [("sigma_ln", 0.8), ("migration", "nearest")])
+def test_grains_that_are_grown_otherwise_are_not_alike(folder, tmp_path, key, value):
+    rows = alike_table(Data(str(folder), checks=NO_CHECKS).grown, 4).to_dict("records")
+    write_table(table_path(tmp_path, "growth"), rows, kind_of("growth"), {})
+    data = Data(str(folder), checks=str(tmp_path))
+    data.plan.config["growth"][key] = value
+    assert data.at_rest is data.grown
+    assert (data.alike is None) == (key == "sigma_ln")
 
 
 def test_what_needs_no_spin_up_is_said_of_all_grown_grains(folder, tmp_path):

@@ -286,14 +286,17 @@ def test_the_depth_of_monomers_is_told_by_their_ranks():
     moved = SimpleNamespace(position=place + [5.0, -3.0, 2.0], radius=radius)
     assert growth.depth_correlation(moved) == pytest.approx(growth.depth_correlation(outside))
     assert growth.depth_correlation(SimpleNamespace(position=place, radius=radius[::-1])) < -0.9
-    rows = growth.compute({"material": "q-S", "type": "BA", "a_eff": 150e-9, "seeds": 2})
+    rows = growth.compute({"material": "q-S", "type": "BA", "a_eff": 150e-9, "seeds": 2, "migration": "random"})
     assert [(row["migration"], row["seed"]) for row in rows] == [("none", 0), ("none", 1)]
     own = grow("BA", 150e-9, "q-S", 1)
     assert rows[1]["porosity"] == own.shape.porosity and rows[1]["depth_correlation"] == growth.depth_correlation(own)
+    assert [rows[1][f"axis_{name}"] for name in "abc"] == [own.shape.a, own.shape.b, own.shape.c]
+    assert (rows[1]["material"], rows[1]["type"], rows[1]["a_eff"]) == ("q-S", "BA", pytest.approx(150e-9, rel=1e-9))
 
 
 def test_both_ways_to_migrate_stand_beside_the_printed_radius():
-    rows = growth.compute({"material": "q-S", "type": "BAM1", "a_eff": 200e-9, "seeds": 6})
+    grains = {"material": "q-S", "type": "BAM1", "a_eff": 200e-9, "seeds": 6}
+    rows = [row for how in ("random", "nearest") for row in growth.compute(grains | {"migration": how})]
     assert [row["migration"] for row in rows] == ["random"] * 6 + ["nearest"] * 6
     aggregates = growth.compute({"material": "q-S", "type": "BA", "monomers": 32, "seeds": 2})
     porosity = [grow("BAM1", 200e-9, "q-S", 0, migration=how).shape.porosity for how in ("random", "nearest")]

@@ -3,7 +3,7 @@
 Everything but the config may be missing: a drive, a figure, a study. What is not there is None.
 """
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -16,9 +16,11 @@ from ratd.calibration import CALIBRATION_COLUMNS, calibrate
 from ratd.config import Plan, read_materials, read_yaml
 from ratd.ensemble import size_key
 from ratd.fragmentation import fragment_table
+from ratd.growth import RadiusDistribution
 from ratd.marks import disruption
 from ratd.validation.data import FOLDER as CHECKED
 from ratd.validation.data import check_table, table_path
+from ratd.validation.growth import NOT
 
 FOLDER = "docs/reproduction/data"
 CONFIG = "config.yaml"
@@ -166,6 +168,34 @@ class Data:
         return joined.drop(columns="size")
 
     @cached_property
+    def alike(self):
+        """More grains than the ensemble has, grown like those of it, for what is said of them as grown: table or None.
+
+        Those of the check of growth, which has the radii that `ratd.growth.RadiusDistribution` has by default.
+        """
+        growth = self.plan.config["growth"]
+        radii = RadiusDistribution(**self.plan.radii)
+        if not self.has_study("growth") or not np.allclose(astuple(radii), astuple(RadiusDistribution()), atol=0.0):
+            return None
+        table = self.study("growth")
+        return table[(table["study"] == "grains") & table["migration"].isin([growth["migration"], NOT])]
+
+    @cached_property
+    def at_rest(self):
+        """Grains for what is said of them as grown, a table: `alike` where that has no fewer of a type and size.
+
+        If it has fewer of any that were grown, all are those of `grown`. Columns material, type, a_eff, n_monomers,
+        porosity, fractal_dimension, axis_a, axis_b, axis_c are there in both cases.
+        """
+        if self.alike is None:
+            return self.grown
+        own, other = (_type_and_size(table) for table in (self.grown, self.alike))
+        fewest, number = own.value_counts(), other.value_counts()
+        if (number.reindex(fewest.index, fill_value=0) < fewest).any():
+            return self.grown
+        return self.alike[other.isin(fewest.index)]
+
+    @cached_property
     def fits(self):
         """Drive -> fit of Eq. 33 beside Table 3."""
         return self._each_drive("ensemble/{drive}/table3.nc", io.read_fit)
@@ -230,6 +260,10 @@ class Data:
     def study(self, name):
         """Table of a check of the validation, one of `STUDIES`, or None."""
         return check_table(self.checks, name) if self.has_study(name) else None
+
+
+def _type_and_size(table):
+    return pd.MultiIndex.from_arrays([table["type"], size_key(table["a_eff"])])
 
 
 def _marked_runs(path):

@@ -12,9 +12,9 @@ from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
 from ratd.reproduction.summary import answer, summary
 from ratd.reproduction.table3 import table3_section
-from ratd.reproduction.text import number, row_table
+from ratd.reproduction.text import number, row_table, with_error
 from ratd.spinup import FIRST_LOSS
-from ratd.statistics import median_of
+from ratd.statistics import mean_of, median_of
 
 INTRODUCTION = """# Reproduction of Reissl et al. (2024)
 
@@ -87,7 +87,6 @@ def report(data, pictures, captions=None):
     -------
     str
     """
-    drives = data.drives
     rows = [*grown.rows(data), *structure.rows(data), *disrupted.rows(data), *disrupted.pairs(data)]
     parts = [
         _introduction(data),
@@ -106,7 +105,7 @@ def report(data, pictures, captions=None):
         "error), no rule, or used to fix the drive. Left out are Fig. 3, a sketch; what the paper says of its own runs "
         "(their energy error, number of steps and Euler forces) and of other work; and what the data do not tell: the "
         "fractal dimension at disruption, what a grain does where the spin-up stops, and Fig. 9 for q-S and co-S.",
-        *_printed_numbers(rows, drives),
+        *_printed_numbers(data, rows),
         "## Figures and tables",
         *_figures(data, pictures, captions or {}),
         "## Why the consistent model lies below the print",
@@ -139,13 +138,31 @@ def _cell_of_figure4(config):
     return f"{own['material']} {own['type']} {own['size_nm']:g} nm" if own else "none"
 
 
-def _printed_numbers(rows, drives):
+def _printed_numbers(data, rows):
     """A table for each part of `ABOUT`, under its heading."""
     parts = []
     for about, what in ABOUT.items():
         chosen = [row for row in rows if row.printed.about == about]
-        parts += [f"### {what[0].upper()}{what[1:]}", row_table(chosen, drives if about == "spin-up" else [])]
+        parts += [f"### {what[0].upper()}{what[1:]}", *(_more_grains(data) if about == "grains" else [])]
+        parts.append(row_table(chosen, data.drives if about == "spin-up" else []))
     return parts
+
+
+def _more_grains(data):
+    """Which grains are told of as grown, a paragraph; none where they are those of the ensemble."""
+    table = data.at_rest
+    if table is data.grown:
+        return []
+    least = table.groupby(["type", size_key(table["a_eff"])]).size().min()
+    own = data.grown["material"].isin(table["material"])
+    one, other = (mean_of(part["porosity"], cell_of(part)) for part in (data.grown[own], data.grown[~own]))
+    return [
+        f"Said of {len(table)} grains, at least {least} of each type and size, which were grown like those of the "
+        f"ensemble (docs/validation.md, Growth), all of {', '.join(table['material'].unique())}. Materials differ in "
+        "how far a contact is compressed, which hardly moves a monomer: the mean porosity of these grains of the "
+        f"ensemble is {with_error(*one)}, of the others {with_error(*other)}. With 90 of each type and size, as in the "
+        "paper, chance would leave more of it open. “Single grains” are those of the ensemble."
+    ]
 
 
 def _coverage(data):
@@ -157,13 +174,14 @@ def _coverage(data):
         for kind, part in table.groupby("type", sort=False):
             counts = size_key(part["a_eff"]).value_counts()
             rows.append([drive, kind, *(str(counts.get(size, 0)) for size in sizes), str(len(part))])
+    at_rest = ", and what is said of them at rest," if data.at_rest is data.grown else ""
     text = (
         f"{len(data.grown)} grains were grown, and {total} spin-ups made. The paper has 2970 grains: 3 materials, 3 "
-        "types, 11 sizes from 50 to 550 nm, 30 seeds, that is 90 grains of each type and size. What is said of grains "
-        "at rest, and of what their contacts can hold, is said of all that were grown. The table counts the spin-ups. "
-        "Where something is said of several cells (a material, type and size each), all of them have the same weight, "
-        "as in the paper, where each has 30 grains: means, medians and fits do not depend on how many grains of each "
-        "could be computed, but their errors do. Cells that are missing here are missing in all of that."
+        "types, 11 sizes from 50 to 550 nm, 30 seeds, that is 90 grains of each type and size. What the contacts of "
+        f"grains can hold{at_rest} is said of all that were grown. The table counts the spin-ups. Where something is "
+        "said of several cells (a material, type and size each), all of them have the same weight, as in the paper, "
+        "where each has 30 grains: means, medians and fits do not depend on how many grains of each could be computed, "
+        "but their errors do. Cells that are missing here are missing in all of that."
     )
     counts = markdown_table(["drive", "type", *(f"{s / 1e3:g} nm" for s in sizes), "all"], rows)
     return "\n\n".join([text, counts, _marks(data)])

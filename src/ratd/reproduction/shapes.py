@@ -34,7 +34,8 @@ EARLY = "A BAM grain that breaks at its weakest cut keeps its shape up to then."
 def rows(data):
     """Rows of the shapes, list of Row."""
     # the shape of a grain hardly changes when it comes to rest
-    grown = {"": data.grown.assign(**{f"axis_{name}_start": data.grown[f"axis_{name}"] for name in "abc"})}
+    at_rest = data.at_rest
+    grown = {"": at_rest.assign(**{f"axis_{name}_start": at_rest[f"axis_{name}"] for name in "abc"})}
     tables = data.tables
     return [
         drive_rows("half", grown, _oblate("start", *ABOUT_HALF), _off_half(grown[""])),
@@ -76,7 +77,7 @@ def _oblate(when, low, high, size=None, types=None):
         share, error, n_oblate, n = oblate_share(table, when)
         if not n:
             return None
-        by = "type" if types == BAM else "material"
+        by = "type" if types == BAM or table["material"].nunique() == 1 else "material"
         parts = ", ".join(f"{name} {oblate_share(part, when)[2]}" for name, part in table.groupby(by, sort=False))
         text = f"{with_error(share, error)} (raw count {n_oblate} of {n}: {parts})"
         if when == "disr" and table["a_eff"].nunique() > 1:

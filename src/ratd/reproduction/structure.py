@@ -5,10 +5,9 @@ import numpy as np
 from ratd.ensemble import size_key
 from ratd.reproduction.bounds import PM
 from ratd.reproduction.course import BAM
-from ratd.reproduction.text import Answer, Row, all_of, lies_between, lies_in, number, with_error
-from ratd.statistics import mean_of, rank_correlation
+from ratd.reproduction.text import Answer, Row, all_of, lies_between, lies_in, with_error
+from ratd.statistics import mean_of, rank_correlation, rank_correlation_error
 from ratd.units import NM
-from ratd.validation.growth import NOT
 
 CORRELATED = 0.3
 """Rank correlation from which on two things are well correlated."""
@@ -19,7 +18,7 @@ FEWEST = 10
 def rows(data):
     """Rows of the structure, list of Row."""
     growth, migration = data.study("growth"), data.plan.config["growth"]["migration"]
-    return [_compact(growth, migration, data.grown), _deeper(growth, migration), _fractal_shape(data.grown)]
+    return [_compact(growth, migration, data.at_rest), _deeper(data.alike), _fractal_shape(data.at_rest)]
 
 
 def _compact(growth, migration, grown):
@@ -36,13 +35,12 @@ def _compact(growth, migration, grown):
             if inside.all() and len(part) >= FEWEST:
                 told[size] = _less(part, curve)
         if told:
-            ends = sorted({min(told), max(told)})
-            parts.append(f"{kind} {', '.join(f'{with_error(*told[size])} ({size * PM / NM:g} nm)' for size in ends)}")
+            parts.append(f"{kind} {_at_ends(told)}")
         verdicts += [lies_between(*value, high=0.0) for value in told.values()]
     reason = (
-        "The ensemble as grown, the smallest and the greatest size of whose grains all have as many monomers as some "
-        "aggregates of equal ones (docs/validation.md, Growth), between which the logarithm of the number is "
-        "interpolated; the verdict counts the sizes between as well."
+        "The smallest and the greatest size of which all grains have as many monomers as some aggregates of equal ones "
+        "(docs/validation.md, Growth), between which the logarithm of the number is interpolated; the verdict counts "
+        "the sizes between as well."
     )
     return Row("compact", {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}, reason)
 
@@ -63,32 +61,38 @@ def _less(grains, curve):
     return less.mean(), float(np.hypot(less.sem(), np.linalg.norm(share.mean(axis=0) * curve["sem"])))
 
 
-def _deeper(growth, migration):
+def _deeper(alike):
     """Whether smaller monomers lie deeper in BAM grains than in BA grains, which do not migrate."""
-    if growth is None:
+    if alike is None:
         return Row("deeper")
-    own = growth[(growth["study"] == "grains") & growth["migration"].isin([migration, NOT])]
-    found = {key: mean_of(part) for key, part in own.groupby(["type", size_key(own["a_eff"])])["depth_correlation"]}
+    sizes = size_key(alike["a_eff"])
+    found = {key: mean_of(part) for key, part in alike.groupby(["type", sizes])["depth_correlation"]}
     parts, verdicts = [], []
     for kind in BAM:
-        told = []
-        for size in sorted(size for other, size in found if other == kind and ("BA", size) in found):
+        told = {}
+        for size in (size for other, size in found if other == kind and ("BA", size) in found):
             (mean, error), (plain, plain_error) = found[kind, size], found["BA", size]
-            value = mean - plain, np.hypot(error, plain_error)
-            told.append(f"{with_error(*value)} ({size * PM / NM:g} nm)")
-            verdicts.append(lies_between(*value, low=0.0))
-        parts += [f"{kind} {', '.join(told)}"] if told else []
-    answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if verdicts else {}
-    plain = ", ".join(
-        f"{number(mean)} ({size * PM / NM:g} nm)" for (kind, size), (mean, _) in found.items() if kind == "BA"
-    )
-    return Row(
-        "deeper", answers, f"Grains that are grown as those of the ensemble. The correlation itself is {plain} in BA."
-    )
+            told[size] = mean - plain, np.hypot(error, plain_error)
+        parts += [f"{kind} {_at_ends(told)}"] if told else []
+        verdicts += [lies_between(*value, low=0.0) for value in told.values()]
+    if not verdicts:
+        return Row("deeper")
+    plain = {size: value for (kind, size), value in found.items() if kind == "BA"}
+    reason = f"The correlation itself is {_at_ends(plain)} in BA; the verdict counts the sizes between as well."
+    return Row("deeper", {"": Answer("; ".join(parts), holds=all_of(verdicts))}, reason)
+
+
+def _at_ends(values):
+    """Values with errors at the smallest and the greatest size, text."""
+    ends = sorted({min(values), max(values)})
+    return ", ".join(f"{with_error(*values[size])} ({size * PM / NM:g} nm)" for size in ends)
 
 
 def _fractal_shape(table):
-    """Rank correlation of the fractal dimension with c/a within each size; mean over the sizes of a type."""
+    """Rank correlation of the fractal dimension with c/a within each size; mean over the sizes of a type.
+
+    These sizes are meant: by how much they differ is no uncertainty.
+    """
     known = table[table["fractal_dimension"].notna()]
     parts, verdicts = [], []
     for kind, own in known.groupby("type", sort=False):
@@ -96,7 +100,8 @@ def _fractal_shape(table):
         if len(sizes) < 2:
             continue
         found = [rank_correlation(part["fractal_dimension"], part["axis_c"] / part["axis_a"]) for part in sizes]
-        value = mean_of(found)
+        errors = rank_correlation_error(found, [len(part) for part in sizes])
+        value = np.mean(found), np.linalg.norm(errors) / len(sizes)
         parts.append(f"{kind} {with_error(*value)}")
         verdicts.append(lies_in(*value, -CORRELATED, CORRELATED))
     answers = {"": Answer("; ".join(parts), holds=all_of(verdicts))} if parts else {}

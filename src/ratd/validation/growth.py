@@ -21,6 +21,7 @@ NOT = "none"
 """Stands for the migration of BA grains, whose monomers stay where they hit."""
 COLUMNS = {
     "study": ("", "aggregates: of equal monomers; grains: as in the ensemble; arrivals: one monomer on another"),
+    "material": ("", "material"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
     "migration": ("", "where a monomer rolls to, or none"),
     "n_monomers": ("1", "monomers"),
@@ -30,6 +31,7 @@ COLUMNS = {
     "enclosing_radius": ("m", "radius of the smallest sphere around all monomers"),
     "a_eff": ("m", "effective radius"),
     "fractal_dimension": ("1", "D_f, Eq. 8"),
+    **{f"axis_{axis}": ("m", f"semi-axis {axis} of a grain, a < b < c, Eqs. 4-6") for axis in "abc"},
     "depth_correlation": ("1", "rank correlation of the radius of a monomer with its distance from the centre of mass"),
     "square_x": ("1", "mean square of the x component of the directions of the contacts"),
     "square_y": ("1", "mean square of the y component of the directions of the contacts"),
@@ -99,7 +101,8 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, and either arrivals (number), or type, seeds (number), and monomers (number) or a_eff [m].
+        material, and either arrivals (number), or type, seeds (number), and monomers (number) or a_eff [m] with
+        migration (one of `ratd.growth.MIGRATIONS`).
     progress : callable, optional
         Called with a sentence.
 
@@ -126,7 +129,7 @@ def arrivals(settings):
     rows = []
     for seed in range(settings["arrivals"]):
         direction, place, impact = arrival(MONOMER_RADIUS, material, seed)
-        row = empty_row("arrivals") | dict(type="BA", n_monomers=2, seed=seed, impact=impact)
+        row = empty_row("arrivals") | dict(material=material.name, type="BA", n_monomers=2, seed=seed, impact=impact)
         for k, axis in enumerate("xyz"):
             row |= {f"direction_{axis}": direction[k], f"place_{axis}": place[k]}
         rows.append(row)
@@ -137,21 +140,23 @@ def aggregates(settings):
     """Rows of `COLUMNS`, one an aggregate of equal monomers, grown with each of `ways`."""
     kind, material = settings["type"], settings["material"]
     radius = np.full(settings["monomers"], MONOMER_RADIUS)
-    return [
-        _row("aggregates", grow_with_radii(kind, radius, material, seed, **how), kind, seed, migration)
-        for migration, how in ways(kind).items()
-        for seed in range(settings["seeds"])
-    ]
-
-
-def grains(settings):
-    """Rows of `COLUMNS`, one a grain with the radii of the ensemble, grown with each of `ways`."""
-    kind, a_eff, material = (settings[name] for name in ("type", "a_eff", "material"))
     rows = []
     for migration, how in ways(kind).items():
         for seed in range(settings["seeds"]):
-            grain = grow(kind, a_eff, material, seed, **how)
-            rows.append(_row("grains", grain, kind, seed, migration) | {"depth_correlation": depth_correlation(grain)})
+            grain = grow_with_radii(kind, radius, material, seed, **how)
+            rows.append(_row("aggregates", grain, seed, migration) | _mean_squares(grain))
+    return rows
+
+
+def grains(settings):
+    """Rows of `COLUMNS`, one a grain with the radii of the ensemble."""
+    kind, a_eff, material, migration = (settings[name] for name in ("type", "a_eff", "material", "migration"))
+    rows = []
+    for seed in range(settings["seeds"]):
+        grain = grow(kind, a_eff, material, seed, migration=migration)
+        row = _row("grains", grain, seed, migration if TYPES[kind] else NOT)
+        row |= {f"axis_{axis}": getattr(grain.shape, axis) for axis in "abc"}
+        rows.append(row | {"depth_correlation": depth_correlation(grain)})
     return rows
 
 
@@ -176,12 +181,10 @@ def depth_correlation(grain):
     return rank_correlation(grain.radius, np.linalg.norm(grain.position - centre, axis=1))
 
 
-def _row(study, grain, kind, seed, migration):
-    direction = grain.position[grain.contacts[:, 0]] - grain.position[grain.contacts[:, 1]]
-    direction /= np.linalg.norm(direction, axis=1)[:, None]
-    square = (direction**2).mean(axis=0)
+def _row(study, grain, seed, migration):
     return empty_row(study) | dict(
-        type=kind,
+        material=grain.material.name,
+        type=grain.type,
         migration=migration,
         n_monomers=grain.n_monomers,
         seed=seed,
@@ -190,7 +193,11 @@ def _row(study, grain, kind, seed, migration):
         enclosing_radius=grain.enclosing_radius,
         a_eff=grain.effective_radius,
         fractal_dimension=grain.shape.fractal_dimension,
-        square_x=square[0],
-        square_y=square[1],
-        square_z=square[2],
     )
+
+
+def _mean_squares(grain):
+    """Mean squares of the components of the directions of the contacts."""
+    direction = grain.position[grain.contacts[:, 0]] - grain.position[grain.contacts[:, 1]]
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return {f"square_{axis}": square for axis, square in zip("xyz", (direction**2).mean(axis=0), strict=True)}

@@ -120,12 +120,12 @@ class Plan:
             }
             for kind, number in product(("BA", "BAM1", "BAM2"), own["monomers"])
         }  # fmt: skip
-        grains = own["grains"]
         pieces |= {
-            f"{kind}_{size}nm": {
-                "material": own["material"], "type": kind, "a_eff": size * NM, "seeds": grains["seeds"]
+            f"{kind}_{size}nm_{grains['migration']}": {
+                "material": own["material"], "type": kind, "a_eff": size * NM, "seeds": grains["seeds"],
+                "migration": grains["migration"],
             }
-            for kind, size in product(grains["types"], grains["sizes_nm"])
+            for grains in own["grains"] for kind, size in product(grains["types"], grains["sizes_nm"])
         }  # fmt: skip
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 
