@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.reproduction import course, disrupted, peak, shapes, structure
+from ratd.reproduction import course, disrupted, peak, shapes, structure, summary
 from synthetic_runs import make_run, make_table, marked
 
 
@@ -208,3 +208,39 @@ def test_fractal_dimension_is_compared_with_the_shape_by_rank():
         [free.assign(fractal_dimension=rng.uniform(size=len(free)) + link * free["axis_c"]) for _ in range(30)]
     )
     assert structure._fractal_shape(mixed).answers[""].holds is True
+
+
+def test_growth_of_the_axis_ratios_is_told_by_type(table):
+    """b/a half as great again and c/b by a fifth in BAM1, nothing in BAM2; BA is left out."""
+    start = {"axis_a_start": 1.0, "axis_b_start": 1.1, "axis_c_start": 1.4}
+    first = np.where(table["type"] == "BAM1", 1.5, 1.0)
+    second = np.where(table["type"] == "BAM1", 1.2, 1.0)
+    end = {"axis_a_disr": 1.0, "axis_b_disr": 1.1 * first, "axis_c_disr": 1.4 * first * second}
+    own = table.assign(**start, **end)
+    told = shapes._deformation({"prescribed": own, "literal": own.assign(axis_c_disr=np.nan)})
+    assert "by factors of prescribed BAM1 1.5 and 1.2, BAM2 1 and 1. " in told
+
+
+def test_share_of_oblate_grains_is_set_beside_that_of_200_nm():
+    oblate, prolate = {"b": 2.0, "c": 2.1}, {"b": 1.1, "c": 2.0}
+    table = pd.DataFrame(
+        {"material": "q-S", "type": "BA", "a_eff": size, "axis_a_start": 1.0}
+        | {f"axis_{name}_start": value for name, value in (oblate if k < share else prolate).items()}
+        for size, share in ((200e-9, 30), (350e-9, 10)) for k in range(50)
+    )  # fmt: skip
+    found = re.fullmatch(r"Less that of 200 nm it is (-\S+) ± (\S+)\.", shapes._more_prolate(table, 350))
+    error = np.hypot(np.sqrt(0.6 * 0.4 / 49), np.sqrt(0.2 * 0.8 / 49))
+    assert [float(value) for value in found.groups()] == pytest.approx([-0.4, error], rel=0.02)
+    assert shapes._more_prolate(table, 500) == ""
+
+
+def test_powers_of_size_are_told_without_cells_of_few_grains():
+    """Cells of 450 and 500 nm with one grain each fall steeply, the others as 1/a_eff."""
+    table = make_table(sizes=(300e-9, 400e-9, 450e-9, 500e-9), seeds=6)
+    few = table["a_eff"] > 420e-9
+    table = table[~few | (table["seed"] == 0)]
+    table = table.assign(omega_disr=np.where(table["a_eff"] > 420e-9, 0.1, 1.0) / table["a_eff"])
+    told = summary._without_thin_cells(SimpleNamespace(tables={"prescribed": table}))
+    assert told.startswith(" 18 of the large cells of the drive `prescribed` have fewer than 3 grains")
+    assert told.endswith(" is BA -1 (300–400 nm), BAM1 -1 (300–400 nm), BAM2 -1 (300–400 nm).")
+    assert summary._without_thin_cells(SimpleNamespace(tables={"literal": table[table["a_eff"] < 420e-9]})) == ""

@@ -432,6 +432,10 @@ def test_literal_drive():
     assert len(exact) == 2 and runs.loc[runs["coriolis"] == "explicit", "turned"].isna().all()
     assert exact["turns"].tolist() == pytest.approx([1.0, 1.0], abs=0.3)
     assert (exact["unstretched"] == exact["turns"] * exact["stretched"]).all()
+    over = exact["omega_first_loss"] / exact["true_omega_first_loss"]
+    assert show_literal.exact_over_consistent(pd.DataFrame(rows)) == (
+        (pytest.approx(over.median()),) * 2, pytest.approx((over.min(), over.max()))
+    )  # fmt: skip
     works(show_literal, rows)
 
 

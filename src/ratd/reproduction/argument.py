@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ratd.ensemble import cell_of
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of
 from ratd.firm_bound import slide_forces
 from ratd.formula_table import FORMULAE, OWN
 from ratd.markdown import markdown_table, plural
@@ -113,7 +113,10 @@ def _above(table):
                 f"above the {name} bound for {count} of {plural(known, 'grain')} (in the median of all its load on the "
                 f"weakest cut is {number(load)} times what that bears)"
             )
-    return f"Eq. 33 with the printed Table 3 lies {', and '.join(found)}. The load grows as omega²."
+    own = table["printed_over_firm"] * np.sqrt(PAPER_MEAN_RADIUS / table["mean_monomer_radius"])
+    count, known, _ = printed_above(table.assign(own=own), "own")
+    with_own = f" With the grains' own <a_mon> it lies above the firm bound for {count}." if known else ""
+    return f"Eq. 33 with the printed Table 3 lies {', and '.join(found)}.{with_own} The load grows as omega²."
 
 
 def _of_strength(data):
@@ -292,7 +295,7 @@ def formula_section(data):
         )
     rows = []
     for kind, part in data.grown.groupby("type", sort=False):
-        mean = [mean_of(part["porosity"]), mean_of(printed_porosity(part["porosity"]))]
+        mean = [mean_of(values, cell_of(part)) for values in (part["porosity"], printed_porosity(part["porosity"]))]
         rows.append([kind, *(with_error(*own) for own in mean), str(len(part))])
     parts.append(
         "Eq. 3 as printed, 5/(4 pi) in place of 15/(8 pi), makes all three axes shorter by a factor sqrt(2/3) and "

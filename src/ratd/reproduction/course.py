@@ -31,10 +31,10 @@ LEVEL = (
 )
 BAM = ("BAM1", "BAM2")
 PIECES = (
-    "A grain that breaks at its weakest cut parts into large pieces. Those that have left are not spun up further; "
+    "A slow spin-up lets large pieces go. Those that have left are not spun up further; "
     "whether the paper counts them as they leave is not said."
 )
-EARLY_CONTACTS = "A hundredth of the load of omega_disr, far from what breaks a contact. Given for the cell of Fig. 4."
+EARLY_CONTACTS = "A hundredth of the load of omega_disr, far from what breaks a contact."
 MOSTLY = 0.8
 """Share that counts as "almost completely"."""
 RARELY = 0.1
@@ -181,15 +181,13 @@ def _whole(data):
 
         return drive_rows(key, {drive: (drive, runs) for drive, runs in course.items()}, evaluate, reason)
 
-    early = (
-        "Slow spin-up breaks a grain at its weakest cut. Given are median, least and greatest of the cell of Fig. 4."
-    )
+    early = "Given are median, least and greatest; for all grains see the mass lost at omega_disr."
     return [
         row("whole_01", 0.1, lambda middle: bool(middle > 1 - 1e-9)),
         drive_rows("contacts_01", course, lambda runs, p: _fewer_contacts(runs, 0.1), EARLY_CONTACTS),
         row("whole_08", 0.8, lambda middle: bool(middle < 1 - 1e-9), early),
         row("whole_10", 1.0, lambda middle: bool(middle < LARGER), early),
-        drive_rows("reconnect", course, _reconnects, "Records up to omega_disr, runs of the cell of Fig. 4 together."),
+        drive_rows("reconnect", course, _reconnects, "Records up to omega_disr, all runs together."),
     ]
 
 

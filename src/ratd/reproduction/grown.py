@@ -101,15 +101,15 @@ def _fractal(table):
     )
     share = table["fractal_dimension"].notna().groupby(size_key(table["a_eff"])).mean()
     from_size = share.index[share == 1].min() * PM  # nothing where no size has it for all
-    changes = _changes(known, "fractal_dimension", from_size, _median)
+    changes = _changes(known, "fractal_dimension", SPLIT, _median)
     holds = all_of(lies_in(*change, 0.0) for _, _, change in changes)
-    large = _changes(known, "fractal_dimension", SPLIT, _median)
+    smaller = _changes(known, "fractal_dimension", from_size, _median)
     return [
         Row("fractal_BA", {"": answer(fractal["median"], fractal["error"], PRINTED["fractal_BA"])}, reason),
         Row(
             "fractal_slope",
             {"": Answer(_told(changes), holds=holds)},
-            f"Sizes at which every grain has a fit. Of large grains alone: {_told(large)}.",
+            f"From the smallest size at which every grain has a fit, of few monomers: {_told(smaller)}.",
         ),
     ]
 

@@ -87,8 +87,8 @@ _GROWN = {
     "fractal_slope": Printed(
         "Sect. 3, Fig. 2",
         "change of the median fractal dimension with size",
-        "“increases slightly”",
-        "rises for all types",
+        "“increases slightly towards larger grains”",
+        "rises for all types from 300 nm on",
     ),
     "half": Printed("Abstract, Sect. 8", "oblate at rest, all grains", "“50:50”", "0.4–0.6", 0.5),
     "oblate_start_200": Printed("Sect. 7.3, Fig. 6", "oblate at rest, 200 nm", "about half", "0.4–0.6", 0.5),
@@ -149,16 +149,20 @@ _OTHER = {
 _SPUN_UP = {
     "ensemble": Printed("Sect. 3", "grains of the ensemble", "2970", "", 2970),
     "terminal": Printed("Sect. 7", "grains not disrupted below omega_RAT = 3e10 rad/s", "none", "none", 0),
-    "onset": Printed("Sect. 7.1, Fig. 4", "mass constant up to [rad/s]", "3e8", NEAR, 3e8),
+    "onset": Printed("Sect. 7.1, Fig. 4", "mass constant up to [rad/s], cell of Fig. 4", "3e8", NEAR, 3e8),
     "drag_time": Printed(
         "Sect. 6",
         "d ln omega_disr/d ln(d omega/dt)",
-        "the drag time “does not impact the result”",
+        "the drag time “does not impact the result” as long as forces change slowly enough",
         "all within 0.1 of 0",
         0.0,
     ),
     "decade": Printed(
-        "Sect. 7.1, Fig. 4", "width of the loss of mass, end over onset", "roughly a factor of 10", ROUGHLY, 10.0
+        "Sect. 7.1, Fig. 4",
+        "width of the loss of mass, end over onset, cell of Fig. 4",
+        "roughly a factor of 10",
+        ROUGHLY,
+        10.0,
     ),
     "gain": Printed(
         "Sect. 7.1, Fig. 4",
@@ -174,13 +178,13 @@ _SPUN_UP = {
     ),
     "stress_rise": Printed(
         "Sect. 7.1, Fig. 4",
-        "greatest fall of the stress before its peak, over the peak",
+        "greatest fall of the stress before its peak, over the peak, cell of Fig. 4",
         "“rises steadily”",
         "below 0.1 in the median",
     ),
     "stress_drop": Printed(
         "Sect. 7.1, Fig. 4",
-        "omega at which the stress has fallen to half of its peak over omega_disr",
+        "omega at which the stress has fallen to half of its peak over omega_disr, cell of Fig. 4",
         "“drops then abruptly”",
         "below 1.1 in the median",
     ),
@@ -206,32 +210,32 @@ _SPUN_UP = {
     ),
     "whole_01": Printed(
         "Sect. 7.2, Fig. 5",
-        "mass of the largest fragment at 0.1 omega_disr",
+        "mass of the largest fragment at 0.1 omega_disr, cell of Fig. 4",
         "all monomers connected",
         "1 in the median",
         1.0,
     ),
     "contacts_01": Printed(
         "Sect. 7.2, Fig. 5",
-        "contacts at 0.1 omega_disr over their start",
+        "contacts at 0.1 omega_disr over their start, cell of Fig. 4",
         "“first connections break”",
         "below 1 in the median",
     ),
     "whole_08": Printed(
         "Sect. 7.2, Fig. 5",
-        "mass of the largest fragment at 0.8 omega_disr",
+        "mass of the largest fragment at 0.8 omega_disr, cell of Fig. 4",
         "small fragments have left",
         "below 1 in the median",
     ),
     "whole_10": Printed(
         "Sect. 7.2, Fig. 5",
-        "mass of the largest fragment at omega_disr",
+        "mass of the largest fragment at omega_disr, cell of Fig. 4",
         "larger fragments have left",
         "below 0.95 in the median",
     ),
     "reconnect": Printed(
         "Sect. 7.2",
-        "share of the changes of the mass of the largest fragment by which it gains, up to omega_disr",
+        "share of the changes of the mass of the largest fragment by which it gains, up to omega_disr, cell of Fig. 4",
         "fragments “may rarely reconnect”",
         "below a tenth",
     ),

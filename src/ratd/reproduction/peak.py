@@ -20,12 +20,12 @@ SMALL = 0.1
 def rows(data):
     """Rows of the peak, list of Row."""
     return [
-        drive_rows("stress_rise", data.course, _of_runs(greatest_fall, STEADY), "The cell of Fig. 4."),
+        drive_rows("stress_rise", data.course, _of_runs(greatest_fall, STEADY)),
         drive_rows(
             "stress_drop",
             data.course,
             _of_runs(omega_of_half, ABRUPT),
-            "The cell of Fig. 4. In part by definition: the peak is looked for before half of the mass is lost.",
+            "In part by definition: the peak is looked for before half of the mass is lost.",
         ),
         drive_rows(
             "peak_mass",
@@ -38,7 +38,7 @@ def rows(data):
             "abrupt",
             {drive: _largest_pieces(table) for drive, table in data.fragments.items()},
             lambda table, p: _of_types(table, lambda own: own["mass_fraction"], -np.inf, SMALL),
-            "What leaves together and parts afterwards counts as one piece.",
+            "A piece is one fragment as it leaves, not all that leave within a record.",
         ),
     ]
 

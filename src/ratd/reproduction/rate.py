@@ -121,7 +121,8 @@ def _drag_time(data):
     steps = onset / rate / cell["literal_step"].median()
     words = (
         f"The paper does name omega_RAT = {number(OMEGA_RAT)} rad/s and a drag time “in the order of hours”, which "
-        f"“does not impact the result” (Sects. 6 and 7). One hour is {number(rate)} rad/s² by Eq. 26, and "
+        "“does not impact the result … as long as the change in centrifugal forces per time step remains much smaller” "
+        f"than what lets monomers settle anew (Sects. 6 and 7). One hour is {number(rate)} rad/s² by Eq. 26, and "
         f"{number(onset)} rad/s would be reached after {number(steps)} printed steps, so that the figures can hardly "
         "have been made with it. Under the printed equations it is no detail: at that rate a solid grain of the cell "
         f"of Fig. 4 would part at {with_error(solid['median'], solid['error'])} rad/s, "
@@ -191,7 +192,7 @@ def solid_parts(data):
     if "literal" in data.tables and rate is not None:
         consistent = with_literal_step(data, law["timestep_factor"])
         both = same_grains(consistent, data.tables["literal"], ("", "_literal"))
-        ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate))
+        ratio = median_of(both["omega_disr_literal"] / solid_prediction(both, rate), cell=cell_of(both))
         parts[0] += (
             f" In the {plural(ratio['n'], 'grain')} that both drives have here, at {number(rate)} rad/s², omega_disr "
             f"of the run lies at {with_error(ratio['median'], ratio['error'])} times that "

@@ -28,10 +28,11 @@ Numbers and figures were written by
 
 from the files in `docs/reproduction/data` and, for the checks of the model, in `docs/validation/data`, where READMEs
 say how these were made; no number but the printed ones and the rules of “holds if” was typed by hand. "±" is a standard
-error; that of a median over several cells counts the scatter between cells as if they were drawn at random, and so is
-rather too large. A range in brackets behind a value is that from the 16th to the 84th percentile of the grains, called
-the middle two thirds; from the least to the greatest where it says "of" how many, or names single grains; and a
-{confidence:g} % interval where the text says so. Angular velocities are in rad/s.
+error; that of a median over several cells is that of grains drawn regardless of their cell, and so is rather too large.
+Where cells hold different numbers of grains, medians and percentiles are weighted (Harrell's rule, which is that of
+numpy for equal weights). A range in brackets behind a value is that from the 16th to the 84th percentile of the
+grains, called the middle two thirds; from the least to the greatest where it says "of" how many, or names single
+grains; and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 
@@ -50,10 +51,11 @@ What the printed equations do is shown here. What the authors' code did is not k
   and a mixture of silicates, the three materials. A cell is a material, type and size.
 - a_eff, the size: radius of the sphere of the same volume of matter. a, b, c: semi-axes of a grain, a < b < c; oblate
   means b/a > c/b. phi: filling factor. P = 1 - phi: porosity.
-- omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks, as long as that holds
-  half of the mass of the grain. The total stress (Eq. 32) is the sum over all contacts of |F_N|/(pi r²), r being the
-  radius of the contact, which is no stress of the material; it is a running median over {window} records. Other marks
-  are the first loss of mass, and the loss of a quarter of it.
+- omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks. The total stress (Eq.
+  32) is the sum over all contacts of |F_N|/(pi r²), r being the radius of the contact, which is no stress of the
+  material. What the paper leaves open: here it is a running median over {window} records, only records before the
+  largest fragment holds less than half of the mass of the grain count, and of equal peaks the last. Other marks are the
+  first loss of mass, and the loss of a quarter of it.
 - Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3;
   N_con is the number of contacts and <a_mon> the mean radius of the monomers. With the printed Table 3 it is taken at
   the printed <a_mon> = 20 nm; with that of our grains, which is greater, it would be lower (Table 3).

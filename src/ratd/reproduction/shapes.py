@@ -28,7 +28,6 @@ ALIKE = 0.05
 REMNANTS = (
     "Median and mean. The largest fragment is less porous than the grain where mass has left, which lowers the mean."
 )
-EARLY = "A BAM grain that breaks at its weakest cut keeps its shape up to then."
 
 
 def rows(data):
@@ -36,16 +35,19 @@ def rows(data):
     # the shape of a grain hardly changes when it comes to rest
     at_rest = data.at_rest
     grown = {"": at_rest.assign(**{f"axis_{name}_start": at_rest[f"axis_{name}"] for name in "abc"})}
-    tables = data.tables
+    tables, deformed = data.tables, _deformation(data.tables)
     return [
         drive_rows("half", grown, _oblate("start", *ABOUT_HALF), _off_half(grown[""])),
         drive_rows("oblate_start_200", grown, _oblate("start", *ABOUT_HALF, 200)),
-        *(drive_rows(f"oblate_start_{size}", grown, _oblate("start", 0.3, 0.5, size)) for size in (350, 500)),
+        *(
+            drive_rows(f"oblate_start_{size}", grown, _oblate("start", 0.3, 0.5, size), _more_prolate(grown[""], size))
+            for size in (350, 500)
+        ),
         drive_rows("c_over_b", grown, _slender),
-        drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), EARLY),
+        drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), deformed),
         drive_rows("oblate_disr_BA", tables, _oblate("disr", 0.0, 0.5, 200, ("BA",))),
-        drive_rows("more_oblate", tables, _more_oblate, EARLY),
-        drive_rows("b_over_a", tables, _flattest, EARLY),
+        drive_rows("more_oblate", tables, _more_oblate, deformed),
+        drive_rows("b_over_a", tables, _flattest, deformed),
         drive_rows("b_over_a_BA", tables, _less_flat, "Arms of BA grains swing out and stretch before they part."),
         drive_rows("porosity_change_BA", tables, _loosened(("BA",), -np.inf, 0.0), REMNANTS),
         drive_rows("porosity_change_BAM", tables, _loosened(BAM, 0.0, np.inf), REMNANTS),
@@ -61,6 +63,33 @@ def _off_half(table):
         return ""
     side = "prolate" if share < 0.5 else "oblate"
     return f"About a half by the rule, yet {abs(share - 0.5) / error:.0f} errors from it: more grains are {side}."
+
+
+def _more_prolate(table, size):
+    """A sentence: by how much the share of oblate grains at rest differs from that of 200 nm."""
+    (here, error), (there, other) = (oblate_share(_chosen(table, own), "start")[:2] for own in (size, 200))
+    return f"Less that of 200 nm it is {with_error(here - there, np.hypot(error, other))}." if here == here else ""
+
+
+def _deformation(tables):
+    """A sentence: by how much the axis ratios of BAM grains have grown at omega_disr, for each drive."""
+    parts = []
+    for drive, table in tables.items():
+        known = _chosen(table, types=BAM).dropna(subset=["axis_c_disr"])
+        types = [f"{kind} {_growth(own, 'b', 'a')} and {_growth(own, 'c', 'b')}" for kind, own in known.groupby("type")]
+        parts += [f"{drive} {', '.join(types)}"] if types else []
+    if not parts:
+        return ""
+    return (
+        f"From rest to omega_disr b/a and c/b grow, in the median, by factors of {'; '.join(parts)}. Where both grow "
+        "alike, a grain becomes longer, but no more oblate."
+    )
+
+
+def _growth(table, long, short):
+    """Median factor, text, by which an axis over another has grown at omega_disr."""
+    ratio = {when: table[f"axis_{long}_{when}"] / table[f"axis_{short}_{when}"] for when in ("start", "disr")}
+    return number(median_of(ratio["disr"] / ratio["start"], cell=cell_of(table))["median"])
 
 
 def _chosen(table, sizes=None, types=None):
@@ -80,7 +109,7 @@ def _oblate(when, low, high, size=None, types=None):
         by = "type" if types == BAM or table["material"].nunique() == 1 else "material"
         parts = ", ".join(f"{name} {oblate_share(part, when)[2]}" for name, part in table.groupby(by, sort=False))
         text = f"{with_error(share, error)} (raw count {n_oblate} of {n}: {parts})"
-        if when == "disr" and table["a_eff"].nunique() > 1:
+        if table["a_eff"].nunique() > 1:
             sides = [(sizes_of(part), oblate_share(part, when)) for part in split_sizes(table)]
             text += "; " + ", ".join(f"{sizes} {with_error(*own[:2])}" for sizes, own in sides)
         ratio = over(share, printed.value) if printed.value else NOTHING

@@ -23,6 +23,8 @@ from ratd.validation.show.convergence import large_shifts, percent
 OF_DRIVE, PRINTED_FIT = "omega_disr, drive `{}`", "Eq. 33 with the printed Table 3"
 FAR_BELOW = 0.9
 """omega of the first loss over omega_disr below which most of a type lose mass well before."""
+FEW = 3
+"""Grains of a cell below which it is said what it does to the powers of size."""
 NEARLY_ALL = 0.9
 """Part of all grains that is called so."""
 
@@ -107,7 +109,10 @@ def answer(data):
         for drive, table in data.tables.items()
     }
     study = data.study("literal")
-    exact = "" if study is None else f", {between(*literal.exact_over_consistent(study))} times in small ones"
+    exact = ""
+    if study is not None:
+        medians, single = literal.exact_over_consistent(study)
+        exact = f", {between(*medians)} times in medians of small ones ({between(*single)} in single runs)"
     return [
         "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart well below the printed "
         f"omega_disr, at {level['prescribed']} times it in the median, and the farther below it the larger it is"
@@ -254,11 +259,13 @@ def _formulae(data):
     table = data.formulae
     if table is None:
         return []
-    medians = table[table["formula"] != formula_table.OWN].groupby(["formula", "type"])["omega_disr_ratio"].median()
+    own = table[table["formula"] != formula_table.OWN].groupby(["formula", "type"])["omega_disr_ratio"]
+    found = [median_of(values) for _, values in own]
+    ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
+    told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
     return [
-        "**Each printed formula alone** moves the median omega_disr of a type to "
-        f"{between(medians.min(), medians.max())} times that of the consistent model, in grains of "
-        f"{sizes_of(table)}; larger ones were not tried."
+        f"**Each printed formula alone** moves the median omega_disr of a type to {told} times that of the consistent "
+        f"model, in grains of {sizes_of(table)}; larger ones were not tried."
     ]
 
 
@@ -300,10 +307,35 @@ def _flattening(data):
     for name, found in sources.items():
         own = {row["type"]: with_error(row["above"], row["above_error"]) for _, row in found.iterrows()}
         rows.append([name, *(own.get(kind, NOTHING) for kind in types)])
-    return (
+    parts = [
         f"**Flattening**: the paper speaks of an asymptotic limit of omega_disr above {SPLIT / NM:g} nm. The power of "
-        f"size there is\n\n{markdown_table(['', *types], rows)}\n\n" + _between_limit_and_fit(data, sources)
-    )
+        "size there is",
+        markdown_table(["", *types], rows),
+        _between_limit_and_fit(data, sources) + _without_thin_cells(data),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _without_thin_cells(data):
+    """Sentences: the powers of size without cells of fewer than `FEW` grains, for each drive that has some."""
+    words = []
+    for drive, table in data.tables.items():
+        large = split_sizes(table)[-1]
+        number_in = large.groupby(cell_of(large))["seed"].transform("size")
+        kept = large[number_in >= FEW]
+        powers = slopes(kept) if len(kept) < len(large) else pd.DataFrame(columns=["above"])
+        told = [
+            f"{row['type']} {with_error(row['above'], row['above_error'])} "
+            f"({sizes_of(kept[kept['type'] == row['type']])})"
+            for _, row in powers[powers["above"].notna()].iterrows()
+        ]
+        if told:
+            thin = large.assign(cell=cell_of(large))[number_in < FEW]["cell"].nunique()
+            words.append(
+                f" {thin} of the large cells of the drive `{drive}` have fewer than {FEW} grains, and count as much as "
+                f"the others; without them the power is {', '.join(told)}."
+            )
+    return "".join(words)
 
 
 def _between_limit_and_fit(data, sources):
@@ -323,7 +355,7 @@ def _between_limit_and_fit(data, sources):
     if not words:
         return ""
     return (
-        f"The paper's two statements exclude each other: a limit is a power of 0, its own fit has "
+        f"The paper's two statements do not agree: a limit is a power of 0, its own fit has "
         f"{between(fit.min(), fit.max())}. Here {'; '.join(words)}."
     )
 

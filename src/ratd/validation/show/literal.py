@@ -71,7 +71,7 @@ def _rate_exponent(used, mark):
 
 
 def exact_over_consistent(table):
-    """omega of the first loss with the exact Coriolis term over that in the consistent model: least and greatest.
+    """omega of the first loss with the exact Coriolis term over that in the consistent model.
 
     Parameters
     ----------
@@ -80,13 +80,13 @@ def exact_over_consistent(table):
 
     Returns
     -------
-    tuple of float
-        Of the medians of each type and size, over the runs that lost mass.
+    medians, single : tuple of float
+        Least and greatest: of the medians of each type and size, over the runs that lost mass, and of these runs.
     """
     exact = with_reference(table[table["coriolis"] == "exact"])
     over = exact["omega_first_loss"] / exact["true_omega_first_loss"]
     medians = over.groupby([exact["type"], exact["a_eff"]]).median()
-    return float(medians.min()), float(medians.max())
+    return tuple((float(values.min()), float(values.max())) for values in (medians, over))
 
 
 def exponents(rows, column):
