@@ -134,7 +134,11 @@ def test_quick_is_three_of_each():
             "at most 1",
         ),
         ({"figures": {"calibration": {"size_nm": 75}}}, "figures.calibration.size_nm is 75", "one of the sizes_nm, 50"),
-        ({"figures": {"formulae": {"size_nm": 75}}}, "figures.formulae.size_nm is 75", "one of the sizes_nm, 50"),
+        (
+            {"figures": {"formulae": {"sizes_nm": [75]}}},
+            "figures.formulae.sizes_nm[0] is 75",
+            "one of the sizes_nm, 50",
+        ),
         ({"figures": {"formulae": {"types": ["RA"]}}}, "figures.formulae.types[0] is 'RA'", "BA, BAM1 or BAM2"),
         ({"figures": {"calibration": {"reach": 0}}}, "figures.calibration.reach is 0", "above 0"),
         (

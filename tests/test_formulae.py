@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -67,12 +68,15 @@ def test_only_the_run_without_damping_has_another_material():
     changed = {formula: plan.formula_runs(formula)[0]["changed"] for formula in FORMULAE}
     assert {name for name, value in changed.items() if value} == {"damping"}
     assert changed["damping"] == {"viscous_time": 0.0}
+    assert [(run["grain"]["type"], run["grain"]["a_eff"]) for run in plan.formula_runs("damping")] == [
+        (kind, pytest.approx(float(size) * 1e-9)) for kind, size in plan.formula_cells
+    ]
     same = {formula: [dict(run, changed={}) for run in plan.formula_runs(formula)] for formula in FORMULAE}
     assert all(same[formula] == same["consistent"] for formula in FORMULAE)
 
 
-def made_up(formula, kind, seed, omega):
-    attributes = {"material": "q-S", "type": kind, "drive": "prescribed", "a_eff": 1e-7, "seed": seed}
+def made_up(formula, kind, seed, omega, a_eff=1e-7):
+    attributes = {"material": "q-S", "type": kind, "drive": "prescribed", "a_eff": a_eff, "seed": seed}
     return formula, [xr.Dataset({"omega_disr": omega, "omega_mass_75": 2 * omega}, attrs=attributes)]
 
 
@@ -97,6 +101,15 @@ def test_effects_are_medians_over_the_same_grains(table, tmp_path):
 def test_a_grain_without_its_consistent_run_is_named():
     with pytest.raises(InputError, match="q-S, BA, .* was not spun up with the consistent model"):
         formula_table([made_up("damping", "BA", 0, 1e8)])
+
+
+def test_effects_of_one_size_are_told_apart_from_those_of_another(table):
+    larger = [made_up("consistent", "BA", 0, 1e8, 2e-7), made_up("damping", "BA", 0, 1.2e8, 2e-7)]
+    both = pd.concat([table, formula_table(larger)])
+    found = formula_effects(both, "omega_disr").set_index(["a_eff", "type"])["median"]
+    assert found[1e-7, "BA"] == pytest.approx(0.9) and found[2e-7, "BA"] == found[2e-7, "all"] == pytest.approx(1.2)
+    rows = [axes.get_title() for axes in figure(both).axes]
+    assert len(rows) == 4 and sum("100 nm" in row for row in rows) == sum("200 nm" in row for row in rows) == 2
 
 
 def test_the_figure_shows_every_type_and_all(table):

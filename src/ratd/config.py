@@ -8,7 +8,7 @@ concerns the figures only, and a further seed concerns no other block than one t
 import math
 import re
 from dataclasses import asdict, dataclass
-from itertools import groupby
+from itertools import groupby, product
 from pathlib import Path
 
 import jsonschema
@@ -299,12 +299,13 @@ def check(config, schemas="config/schema"):
     if figure8 is not None:
         for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
             plan.find(figure8[name], key, f"figures.figure8.{name}")
-    figure9 = config["figures"]["figure9"]
-    if figure9 is not None:
-        plan.find(figure9["material"], "materials", "figures.figure9.material")
-        for key in ("types", "sizes_nm"):
-            for k, value in enumerate(figure9[key]):
-                plan.find(value, key, f"figures.figure9.{key}[{k}]")
+    for name in ("figure9", "formulae"):
+        own = config["figures"][name]
+        if own is not None:
+            plan.find(own["material"], "materials", f"figures.{name}.material")
+            for key in ("types", "sizes_nm"):
+                for k, value in enumerate(own[key]):
+                    plan.find(value, key, f"figures.{name}.{key}[{k}]")
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
@@ -315,10 +316,6 @@ def check(config, schemas="config/schema"):
                     f"config: figures.calibration.runs[{k}] has the angular_acceleration and timestep_factor of an "
                     "earlier one; allowed: each pair once, for whichever seeds"
                 )
-    own = config["figures"]["formulae"]
-    if own is not None:
-        for kind in own["types"]:
-            plan.find_cell(own | {"type": kind}, "figures.formulae")
     return plan
 
 
@@ -804,19 +801,28 @@ class Plan:
         return [] if self.config["figures"]["formulae"] is None else list(FORMULAE)
 
     def formula_runs(self, formula):
-        """Settings of the runs with one formula as printed, one a type (see `ratd.variations.spin_up_ways`)."""
+        """Settings of the runs with one formula as printed, one a type and size (see `ratd.variations.spin_up_ways`).
+
+        In the order of `formula_cells`.
+        """
         own = self.config["figures"]["formulae"]
         first = own["seeds"]["first"]
         pace = {"epsilon": own["epsilon"], "angular_acceleration": None, "timestep_factor": own["timestep_factor"]}
         return [
             {
-                "grain": self.grow(own["material"], kind, size_label(own["size_nm"])),
+                "grain": self.grow(own["material"], kind, size),
                 "changed": {"viscous_time": 0.0} if formula == DAMPING else {},
                 "seeds": list(range(first, first + own["seeds"]["number"])),
                 "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed", kind) | pace,
             }
-            for kind in own["types"]
+            for kind, size in self.formula_cells
         ]
+
+    @property
+    def formula_cells(self):
+        """Types and labels of the sizes of the grains that are spun up with each printed formula, list of tuple."""
+        own = self.config["figures"]["formulae"]
+        return list(product(own["types"], map(size_label, own["sizes_nm"])))
 
     def figure(self, number, drive=None):
         """Settings of one figure, with its own part of the config, sizes in m."""

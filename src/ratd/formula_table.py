@@ -63,7 +63,7 @@ def formula_table(files):
 
 
 def formula_effects(table, mark):
-    """How far each printed formula moves a mark: medians over the grains of a type, and over all.
+    """How far each printed formula moves a mark: medians over the grains of a type and size, and over all of a size.
 
     Parameters
     ----------
@@ -75,11 +75,11 @@ def formula_effects(table, mark):
     Returns
     -------
     pandas.DataFrame
-        One row a formula and type (``all`` for all of them together): formula, type, and what `median_of` of
-        ratd.statistics gives for the ratio to the consistent model.
+        One row a formula, size and type (``all`` for all of them together): formula, a_eff, type, and what `median_of`
+        of ratd.statistics gives for the ratio to the consistent model.
     """
     rows = []
-    for formula, part in table[table["formula"] != OWN].groupby("formula", sort=False):
+    for (formula, a_eff), part in table[table["formula"] != OWN].groupby(["formula", "a_eff"], sort=False):
         for kind, here in [*part.groupby("type"), ("all", part)]:
-            rows.append({"formula": formula, "type": kind} | median_of(here[f"{mark}_ratio"]))
+            rows.append({"formula": formula, "a_eff": a_eff, "type": kind} | median_of(here[f"{mark}_ratio"]))
     return pd.DataFrame(rows)

@@ -2,13 +2,14 @@
 FORMULAE = PLAN.formulae
 
 if FORMULAE:
+    OF_FORMULA = [
+        f"<results>/formulae/{{formula}}/{kind}/{size}nm.nc"
+        for kind, size in PLAN.formula_cells
+    ]
 
     rule formulae:
         output:
-            expand(
-                "<results>/formulae/{{formula}}/{type}.nc",
-                type=PLAN.config["figures"]["formulae"]["types"],
-            ),
+            OF_FORMULA,
         log:
             "<results>/logs/formulae/{formula}.log",
         benchmark:
@@ -31,11 +32,7 @@ if FORMULAE:
 
     rule formula_table:
         input:
-            expand(
-                "<results>/formulae/{formula}/{type}.nc",
-                formula=FORMULAE,
-                type=PLAN.config["figures"]["formulae"]["types"],
-            ),
+            [path.format(formula=formula) for formula in FORMULAE for path in OF_FORMULA],
         output:
             nc="<results>/formulae/table.nc",
             csv=report(
@@ -60,7 +57,7 @@ if FORMULAE:
                 "formulae": [
                     formula
                     for formula in FORMULAE
-                    for type in PLAN.config["figures"]["formulae"]["types"]
+                    for cell in PLAN.formula_cells
                 ]
             },
         message:

@@ -31,7 +31,7 @@ def formulae(table):
     Returns
     -------
     matplotlib.figure.Figure
-        A panel a mark. Medians over the grains of a type, and over all, with their standard errors.
+        A row a size, a panel a mark. Medians over the grains of a type, and over all, with their standard errors.
 
     Raises
     ------
@@ -41,22 +41,24 @@ def formulae(table):
     names = list(dict.fromkeys(table.loc[table["formula"] != OWN, "formula"]))
     if not names:
         raise InputError("formulae: give at least one run with a printed formula")
-    first = table.iloc[0]
-    grains = plural(len(table[table["formula"] == OWN]), f"{first['material']} grain")
-    title = f"{grains} of {nanometres(first['a_eff']):.0f} nm with every formula, {drive_text(drive_of(table))}"
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, title)
+    own = table[table["formula"] == OWN]
+    grains = plural(len(own), f"{own.iloc[0]['material']} grain")
+    title = f"{grains} with every formula, {drive_text(drive_of(table))}"
+    sizes = np.unique(table["a_eff"])
+    figure = new_figure(TWO_COLUMNS, (0.1 + 0.32 * len(sizes)) * TWO_COLUMNS, title)
     looks = type_style(table["type"]) | {"all": ALL}
-    panels = figure.subplots(1, len(MARKS), sharey=True, squeeze=False)[0]
-    for axes, mark in zip(panels, MARKS, strict=True):
+    panels = figure.subplots(len(sizes), len(MARKS), sharex="col", sharey=True, squeeze=False)
+    for mark, column in zip(MARKS, panels.T, strict=True):
         found = formula_effects(table, mark)
-        axes.axvline(1.0, color="black", lw=0.6)
-        for k, (kind, look) in enumerate(looks.items()):
-            here = found[found["type"] == kind].set_index("formula").reindex(names)
-            y = -np.arange(len(names)) - 0.16 * (k - (len(looks) - 1) / 2)
-            axes.errorbar(here["median"], y, xerr=here["error"], ls="none", elinewidth=0.8, capsize=1.5, **look)
-        axes.set_yticks(-np.arange(len(names)), [TEXT.get(name, name) for name in names])
-        axes.tick_params(axis="y", which="both", length=0)
-        axes.set_title(TITLE[mark])
+        for a_eff, axes in zip(sizes, column, strict=True):
+            axes.axvline(1.0, color="black", lw=0.6)
+            for k, (kind, look) in enumerate(looks.items()):
+                here = found[(found["type"] == kind) & (found["a_eff"] == a_eff)].set_index("formula").reindex(names)
+                y = -np.arange(len(names)) - 0.16 * (k - (len(looks) - 1) / 2)
+                axes.errorbar(here["median"], y, xerr=here["error"], ls="none", elinewidth=0.8, capsize=1.5, **look)
+            axes.set_yticks(-np.arange(len(names)), [TEXT.get(name, name) for name in names])
+            axes.tick_params(axis="y", which="both", length=0)
+            axes.set_title(f"{TITLE[mark]}, {nanometres(a_eff):.0f} nm")
         axes.set_xlabel("$\\omega$ over that in the consistent model")
     handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in looks.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))

@@ -277,16 +277,16 @@ def formula_section(data):
         own = table["formula"] == OWN
         rows = []
         for name, part in table[~own].groupby("formula", sort=False):
-            for kind, few in part.groupby("type", sort=False):
+            for (kind, nm), few in part.groupby(["type", whole_nm(part)], sort=False):
                 found = [median_of(few[f"{mark}_ratio"]) for mark in ("omega_disr", "omega_mass_75")]
                 cells = [with_error(each["median"], each["error"]) for each in found]
-                rows.append([FORMULAE.get(name, name), kind, *cells, str(len(few))])
+                rows.append([FORMULAE.get(name, name), kind, f"{nm} nm", *cells, str(len(few))])
         parts.append(
             f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
             "printed and all else as in the consistent model. Medians of the ratio to the same grain in the consistent "
             "model:"
         )
-        head = ["formula as printed", "type", "omega_disr", "omega at 25 % mass loss", "runs"]
+        head = ["formula as printed", "type", "size", "omega_disr", "omega at 25 % mass loss", "runs"]
         parts.append(markdown_table(head, rows))
         parts.append(
             "Not tried alone are misprints without which nothing runs as it should, or that change no number: the "

@@ -65,11 +65,11 @@ CAPTIONS = {
     "formulae": (
         "The same grains spun up with one formula at a time as it is printed, named on the left, the rest being the "
         "consistent model: omega_disr (left) and the omega of the loss of a quarter of the mass (right), over those "
-        "of the same grain in the consistent model. Markers are medians over the grains of a type, diamonds those "
-        "over all grains; bars are their standard errors, and where none is seen it is shorter than the marker. The "
-        "vertical line is 1, no change.\n\n"
-        "What to see: which markers leave the line by more than their bars, and by how much. Other sizes than that in "
-        "the title were not tried."
+        "of the same grain in the consistent model. A row a size. Markers are medians over the grains of a type, "
+        "diamonds those over all grains; bars are their standard errors, and where none is seen it is shorter than the "
+        "marker. The vertical line is 1, no change.\n\n"
+        "What to see: which markers leave the line by more than their bars, and by how much. Other sizes were not "
+        "tried."
     ),
     "fragments": (
         "Fragments that leave the largest one, by their mass over that of the grain: the share that lies in "

@@ -259,13 +259,13 @@ def _formulae(data):
     table = data.formulae
     if table is None:
         return []
-    own = table[table["formula"] != formula_table.OWN].groupby(["formula", "type"])["omega_disr_ratio"]
+    own = table[table["formula"] != formula_table.OWN].groupby(["formula", "type", "a_eff"])["omega_disr_ratio"]
     found = [median_of(values) for _, values in own]
     ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
     told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
     return [
-        f"**Each printed formula alone** moves the median omega_disr of a type to {told} times that of the consistent "
-        f"model, in grains of {sizes_of(table)}; larger ones were not tried."
+        f"**Each printed formula alone** moves the median omega_disr of a type and size to {told} times that of the "
+        f"consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
     ]
 
 
