@@ -106,8 +106,9 @@ def test_a_grain_without_its_consistent_run_is_named():
 def test_effects_of_one_size_are_told_apart_from_those_of_another(table):
     larger = [made_up("consistent", "BA", 0, 1e8, 2e-7), made_up("damping", "BA", 0, 1.2e8, 2e-7)]
     both = pd.concat([table, formula_table(larger)])
-    found = formula_effects(both, "omega_disr").set_index(["a_eff", "type"])["median"]
-    assert found[1e-7, "BA"] == pytest.approx(0.9) and found[2e-7, "BA"] == found[2e-7, "all"] == pytest.approx(1.2)
+    both["a_eff"] *= 1 + 1e-15 * np.arange(len(both))  # as from the sum of their monomers
+    found = formula_effects(both, "omega_disr").set_index(["nm", "type"])["median"]
+    assert found[100, "BA"] == pytest.approx(0.9) and found[200, "BA"] == found[200, "all"] == pytest.approx(1.2)
     rows = [axes.get_title() for axes in figure(both).axes]
     assert len(rows) == 4 and sum("100 nm" in row for row in rows) == sum("200 nm" in row for row in rows) == 2
 

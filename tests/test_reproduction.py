@@ -222,7 +222,7 @@ def test_studies_are_told_from_their_columns(folder):
         if "| omega at T_vis = 9 ps over that at 5 ps" in line
     )
     assert "1.05 ± " in open_row and "| yes |" not in open_row and "| no |" not in open_row
-    assert f"| {FORMULAE['damping']} | BA | 0.600 ± 0.0" in text and "| 0.8 | 3 |" in text
+    assert f"| {FORMULAE['damping']} | BA | 100 nm | 0.600 ± 0.0" in text and "| 0.8 | 3 |" in text
     assert "3.40e13 rad/s² (3.00e13–4.00e13" in text and "p = 0.320 ± 0.010 over 3 runs of 1 grain" in text
     assert "it is 3.60e13 rad/s² from the slowest run of each grain" in text
     assert "in pairs of runs of the same grain: 1.1000 (f = 0.1 over f = 0.02, 1 pair)." in text

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ratd.errors import InputError
-from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, nanometres, new_figure, styled, type_style
-from ratd.formula_table import OWN, formula_effects
+from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, new_figure, styled, type_style
+from ratd.formula_table import OWN, formula_effects, sizes_in_nm
 from ratd.markdown import plural
 from ratd.parameters import MARKS
 
@@ -44,21 +44,21 @@ def formulae(table):
     own = table[table["formula"] == OWN]
     grains = plural(len(own), f"{own.iloc[0]['material']} grain")
     title = f"{grains} with every formula, {drive_text(drive_of(table))}"
-    sizes = np.unique(table["a_eff"])
+    sizes = np.unique(sizes_in_nm(table))
     figure = new_figure(TWO_COLUMNS, (0.1 + 0.32 * len(sizes)) * TWO_COLUMNS, title)
     looks = type_style(table["type"]) | {"all": ALL}
     panels = figure.subplots(len(sizes), len(MARKS), sharex="col", sharey=True, squeeze=False)
     for mark, column in zip(MARKS, panels.T, strict=True):
         found = formula_effects(table, mark)
-        for a_eff, axes in zip(sizes, column, strict=True):
+        for nm, axes in zip(sizes, column, strict=True):
             axes.axvline(1.0, color="black", lw=0.6)
             for k, (kind, look) in enumerate(looks.items()):
-                here = found[(found["type"] == kind) & (found["a_eff"] == a_eff)].set_index("formula").reindex(names)
+                here = found[(found["type"] == kind) & (found["nm"] == nm)].set_index("formula").reindex(names)
                 y = -np.arange(len(names)) - 0.16 * (k - (len(looks) - 1) / 2)
                 axes.errorbar(here["median"], y, xerr=here["error"], ls="none", elinewidth=0.8, capsize=1.5, **look)
             axes.set_yticks(-np.arange(len(names)), [TEXT.get(name, name) for name in names])
             axes.tick_params(axis="y", which="both", length=0)
-            axes.set_title(f"{TITLE[mark]}, {nanometres(a_eff):.0f} nm")
+            axes.set_title(f"{TITLE[mark]}, {nm:g} nm")
         axes.set_xlabel("$\\omega$ over that in the consistent model")
     handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in looks.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))

@@ -5,9 +5,10 @@ import pandas as pd
 
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of
 from ratd.firm_bound import slide_forces
-from ratd.formula_table import FORMULAE, OWN
+from ratd.formula_table import FORMULAE, OWN, formula_effects
 from ratd.markdown import markdown_table, plural
 from ratd.materials import pull_off_force, reduced_radius
+from ratd.parameters import MARKS
 from ratd.reproduction.bounds import by_type_and_size, median_and_range, ratios, same_grains, table3_omega, whole_nm
 from ratd.reproduction.text import number, with_error
 from ratd.statistics import mean_of, median_of
@@ -275,12 +276,13 @@ def formula_section(data):
         parts.append("The study of the printed formulae of the contacts, one at a time, is not part of the data.")
     else:
         own = table["formula"] == OWN
-        rows = []
-        for name, part in table[~own].groupby("formula", sort=False):
-            for (kind, nm), few in part.groupby(["type", whole_nm(part)], sort=False):
-                found = [median_of(few[f"{mark}_ratio"]) for mark in ("omega_disr", "omega_mass_75")]
-                cells = [with_error(each["median"], each["error"]) for each in found]
-                rows.append([FORMULAE.get(name, name), kind, f"{nm} nm", *cells, str(len(few))])
+        effects = [formula_effects(table, mark).query("type != 'all'").to_dict("records") for mark in MARKS]
+        rows = [
+            [FORMULAE.get(both[0]["formula"], both[0]["formula"]), both[0]["type"], f"{both[0]['nm']:g} nm"]
+            + [with_error(each["median"], each["error"]) for each in both]
+            + [str(both[0]["n"])]
+            for both in zip(*effects, strict=True)
+        ]
         parts.append(
             f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
             "printed and all else as in the consistent model. Medians of the ratio to the same grain in the consistent "

@@ -259,8 +259,7 @@ def _formulae(data):
     table = data.formulae
     if table is None:
         return []
-    own = table[table["formula"] != formula_table.OWN].groupby(["formula", "type", "a_eff"])["omega_disr_ratio"]
-    found = [median_of(values) for _, values in own]
+    found = formula_table.formula_effects(table, "omega_disr").query("type != 'all'").to_dict("records")
     ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
     told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
     return [
