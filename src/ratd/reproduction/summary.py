@@ -259,12 +259,12 @@ def _formulae(data):
     table = data.formulae
     if table is None:
         return []
-    found = formula_table.formula_effects(table, "omega_disr").query("type != 'all'").to_dict("records")
+    found = formula_table.formula_effects(table, "omega_disr").query("type == 'all'").to_dict("records")
     ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
     told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
     return [
-        f"**Each printed formula alone** moves the median omega_disr of a type and size to {told} times that of the "
-        f"consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
+        f"**Each printed formula alone** moves the median omega_disr of a size, all types together, to {told} times that "
+        f"of the consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
     ]
 
 
