@@ -263,8 +263,8 @@ def _formulae(data):
     ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
     told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
     return [
-        f"**Each printed formula alone** moves the median omega_disr of a size, all types together, to {told} times that "
-        f"of the consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
+        "**Each printed formula alone** moves the median omega_disr of a size, all types together, to "
+        f"{told} times that of the consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
     ]
 
 
