@@ -525,3 +525,22 @@ def test_relaxation_ends_where_that_of_the_processor_ends(grains, monkeypatch):
     assert rested[0].counter[layout.STEPS] == rested[1].counter[layout.STEPS] > 0
     assert_close(rested[0], rested[1], 1e-9)
     assert_same_run(found, expected, 1e-9)
+
+
+def test_relaxation_does_not_depend_on_the_company(grains, monkeypatch):
+    """Another grain asks for more room while the pressed pair relaxes, so that both go on in a new batch."""
+    monkeypatch.setattr(cuda_spin_up, "SEGMENT", 1)
+    (alone,) = spin_up_many(grains[1:2], max_steps=20, **FAST)
+    take, asked = cuda_spin_up.Spinning.take, []
+
+    def asking(one, batch, place):
+        full = take(one, batch, place)
+        if one.number == 1 and len(asked) < 2:
+            asked.append(one)
+            return True
+        return full
+
+    monkeypatch.setattr(cuda_spin_up.Spinning, "take", asking)
+    found, _ = spin_up_many([grains[1], grains[0]], max_steps=20, **FAST)
+    assert len(asked) == 2
+    xr.testing.assert_identical(found, alone)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ratd.cuda.advance import PAUSED, RESTED, advance_grains
 from ratd.cuda.arena import (
-    CODE, FEWEST, GOALS, RELAXING, RESIDUAL, ROW_COLUMNS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive,
+    CODE, FEWEST, GOALS, KINETIC, RELAXING, RESIDUAL, ROW_COLUMNS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive,
 )  # fmt: skip
 from ratd.cuda.device import MAX_THREADS, MIN_THREADS, SIMULATED, cuda, require, upload
 from ratd.drives import AT_REST, OMEGA_RAT
@@ -88,6 +88,7 @@ class Spinning:
         self.threads = threads_for(self.contacts)
         self.segment = segment_for(self.contacts)
         self.failure = self.watch = self.residual = None
+        self.kinetic = 0.0  # after the last round of the relaxation, [J]: a new batch does not know it
         self.relaxing = not run.load(checkpoint)
         if self.relaxing:
             grain = run.grain
@@ -108,7 +109,7 @@ class Spinning:
         task[RELAXING] = self.relaxing
         task[SEGMENT_END] = (run.state.counter[STEPS] // self.segment + 1) * self.segment
         if self.relaxing:
-            drive[RESIDUAL] = self.residual
+            drive[RESIDUAL], drive[KINETIC] = self.residual, self.kinetic
             task[STEPS_GOAL], task[FEWEST], task[GOALS] = RELAXATION_ROUNDS * RELAXATION_STEPS, -1, 0
             return
         task[STEPS_GOAL], task[FEWEST] = run.steps_goal, run.fewest
@@ -130,6 +131,7 @@ class Spinning:
             Whether the grain needs more room before the next launch.
         """
         run, task = self.run, batch.host.task[place]
+        self.kinetic = float(batch.host.drive[place, KINETIC])
         for row in batch.host.row[place, : task[ROWS]]:
             run.rows.append(record_of(row, run.grain.material.density))
         code = task[CODE]
@@ -215,15 +217,33 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
             if done is not None:
                 done(one.number, finished[one.number])
 
+    saving = Saving()
     while at_work:
-        _work(at_work, note)
+        _work(at_work, note, saving)
         at_work = [one for one in at_work if not one.over]
     if failures:
         raise RuntimeError("; ".join(failures))
     return finished
 
 
-def _work(at_work, note):
+class Saving:
+    """When checkpoints are due: every `CHECKPOINT_INTERVAL`, or less often where they take long; the device waits."""
+
+    def __init__(self):
+        self.last, self.interval = time.monotonic(), CHECKPOINT_INTERVAL
+
+    @property
+    def due(self):
+        """Whether it is time."""
+        return time.monotonic() - self.last > self.interval
+
+    def done(self, begun):
+        """Checkpoints were made since `begun`."""
+        self.last = time.monotonic()
+        self.interval = max(CHECKPOINT_INTERVAL, MOST_SAVING * (self.last - begun))
+
+
+def _work(at_work, note, saving):
     """Run grains on the device until all are over, one needs more room, or most of the memory is that of finished ones.
 
     Parameters
@@ -232,12 +252,12 @@ def _work(at_work, note):
         Largest first.
     note : callable
         Told of each grain that is over.
+    saving : Saving
     """
     batch = Batch([one.run.state for one in at_work], ROWS_PER_LAUNCH)
     for place, one in enumerate(at_work):
         one.run.state = batch.view(place)
     active = list(range(len(at_work)))
-    saved, interval = time.monotonic(), CHECKPOINT_INTERVAL
     while active and 2 * len(active) >= len(at_work):
         for place in active:
             at_work[place].tell(batch, place)
@@ -249,16 +269,14 @@ def _work(at_work, note):
             if at_work[place].over:
                 note(at_work[place])
         active = [place for place in active if not at_work[place].over]
-        if time.monotonic() - saved > interval:
+        if saving.due:
             begun = time.monotonic()
             for place in active:
                 one = at_work[place]
                 if one.checkpoint is not None and not one.relaxing and place not in full:
                     one.run.state = batch.state(place)
                     one.run.save(one.checkpoint)
-            saved = time.monotonic()
-            # the device waits meanwhile
-            interval = max(CHECKPOINT_INTERVAL, MOST_SAVING * (saved - begun))
+            saving.done(begun)
         if full:
             break
     for place in active:
