@@ -32,7 +32,11 @@ if FORMULAE:
 
     rule formula_table:
         input:
-            [path.format(formula=formula) for formula in FORMULAE for path in OF_FORMULA],
+            [
+                path.format(formula=formula)
+                for formula in FORMULAE
+                for path in OF_FORMULA
+            ],
         output:
             nc="<results>/formulae/table.nc",
             csv=report(
@@ -55,9 +59,7 @@ if FORMULAE:
             code=CODE["formula_table"],
             settings={
                 "formulae": [
-                    formula
-                    for formula in FORMULAE
-                    for cell in PLAN.formula_cells
+                    formula for formula in FORMULAE for cell in PLAN.formula_cells
                 ]
             },
         message:
