@@ -281,13 +281,11 @@ def check(config, schemas="config/schema"):
                 )
     if figure6 is not None:
         plan.find(figure6["material"], "materials", "figures.figure6.material")
-        for k, size in enumerate(figure6["sizes_nm"]):
-            plan.find(size, "sizes_nm", f"figures.figure6.sizes_nm[{k}]")
+        plan.find_each(figure6["sizes_nm"], "sizes_nm", "figures.figure6.sizes_nm")
     figure1, figure5, figure8 = (config["figures"][f"figure{number}"] for number in (1, 5, 8))
     if figure1 is not None:
         plan.find(figure1["material"], "materials", "figures.figure1.material")
-        for k, size in enumerate(figure1["sizes_nm"]):
-            plan.find(size, "sizes_nm", f"figures.figure1.sizes_nm[{k}]")
+        plan.find_each(figure1["sizes_nm"], "sizes_nm", "figures.figure1.sizes_nm")
         plan.find_seed(figure1["seed"], plan.seeds, "figures.figure1.seed")
     if figure5 is not None:
         if figure5 not in config["snapshots"]["grains"]:
@@ -304,8 +302,7 @@ def check(config, schemas="config/schema"):
         if own is not None:
             plan.find(own["material"], "materials", f"figures.{name}.material")
             for key in ("types", "sizes_nm"):
-                for k, value in enumerate(own[key]):
-                    plan.find(value, key, f"figures.{name}.{key}[{k}]")
+                plan.find_each(own[key], key, f"figures.{name}.{key}")
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
@@ -324,8 +321,7 @@ def _check_fewer(plan):
     for k, entry in enumerate(plan.fewer):
         where = f"seeds.fewer[{k}]"
         for key in ("drives", "materials", "types", "sizes_nm"):
-            for j, value in enumerate(entry.get(key, ())):
-                plan.find(value, key, f"{where}.{key}[{j}]")
+            plan.find_each(entry.get(key, ()), key, f"{where}.{key}")
         if entry["number"] > len(plan.seeds):
             raise InputError(f"config: {where}.number is {entry['number']}; allowed: 0 to {len(plan.seeds)}")
     for drive in plan.config["drives"]:
@@ -620,6 +616,11 @@ class Plan:
             raise InputError(
                 f"config: {where} is {value!r}; allowed: one of the {key}, {', '.join(map(str, self.config[key]))}"
             )
+
+    def find_each(self, values, key, where):
+        """Raise InputError unless each of a list is one of those that the ensemble has under a key."""
+        for k, value in enumerate(values):
+            self.find(value, key, f"{where}[{k}]")
 
     def find_seed(self, seed, seeds, where):
         """Raise InputError unless a seed is one of a range."""

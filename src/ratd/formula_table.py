@@ -2,11 +2,11 @@
 
 import pandas as pd
 
+from ratd.ensemble import size_key
 from ratd.parameters import MARKS, beside_own
 from ratd.statistics import median_of
-from ratd.units import NM
 
-__all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table", "sizes_in_nm"]
+__all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table"]
 
 OWN = "consistent"
 DAMPING = "damping"
@@ -76,17 +76,12 @@ def formula_effects(table, mark):
     Returns
     -------
     pandas.DataFrame
-        One row a formula, size and type (``all`` for all of them together): formula, nm (`sizes_in_nm`), type, and what
+        One row a formula, size and type (``all`` for all of them together): formula, nm (the size), type, and what
         `median_of` of ratd.statistics gives for the ratio to the consistent model.
     """
     rows = []
     changed = table[table["formula"] != OWN]
-    for (formula, nm), part in changed.groupby(["formula", sizes_in_nm(changed)], sort=False):
+    for (formula, size), part in changed.groupby(["formula", size_key(changed["a_eff"])], sort=False):
         for kind, here in [*part.groupby("type"), ("all", part)]:
-            rows.append({"formula": formula, "nm": nm, "type": kind} | median_of(here[f"{mark}_ratio"]))
+            rows.append({"formula": formula, "nm": size / 1000, "type": kind} | median_of(here[f"{mark}_ratio"]))
     return pd.DataFrame(rows)
-
-
-def sizes_in_nm(table):
-    """Sizes of the grains of a table [nm], without the rounding errors of the sums of their monomers."""
-    return (table["a_eff"] / NM).round(3)

@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from ratd.errors import InputError
 from ratd.figures.style import TWO_COLUMNS, drive_of, drive_text, new_figure, styled, type_style
-from ratd.formula_table import OWN, formula_effects, sizes_in_nm
+from ratd.formula_table import OWN, formula_effects
 from ratd.markdown import plural
 from ratd.parameters import MARKS
 
@@ -44,12 +44,12 @@ def formulae(table):
     own = table[table["formula"] == OWN]
     grains = plural(len(own), f"{own.iloc[0]['material']} grain")
     title = f"{grains} with every formula, {drive_text(drive_of(table))}"
-    sizes = np.unique(sizes_in_nm(table))
+    effects = {mark: formula_effects(table, mark) for mark in MARKS}
+    sizes = np.unique(effects[MARKS[0]]["nm"])
     figure = new_figure(TWO_COLUMNS, (0.1 + 0.32 * len(sizes)) * TWO_COLUMNS, title)
     looks = type_style(table["type"]) | {"all": ALL}
     panels = figure.subplots(len(sizes), len(MARKS), sharex="col", sharey=True, squeeze=False)
-    for mark, column in zip(MARKS, panels.T, strict=True):
-        found = formula_effects(table, mark)
+    for (mark, found), column in zip(effects.items(), panels.T, strict=True):
         for nm, axes in zip(sizes, column, strict=True):
             axes.axvline(1.0, color="black", lw=0.6)
             for k, (kind, look) in enumerate(looks.items()):

@@ -277,12 +277,11 @@ def formula_section(data):
     else:
         own = table["formula"] == OWN
         effects = [formula_effects(table, mark).query("type != 'all'").to_dict("records") for mark in MARKS]
-        rows = [
-            [FORMULAE.get(both[0]["formula"], both[0]["formula"]), both[0]["type"], f"{both[0]['nm']:g} nm"]
-            + [with_error(each["median"], each["error"]) for each in both]
-            + [str(both[0]["n"])]
-            for both in zip(*effects, strict=True)
-        ]
+        rows = []
+        for both in zip(*effects, strict=True):
+            formula, kind, nm, n = (both[0][name] for name in ("formula", "type", "nm", "n"))
+            cells = [with_error(each["median"], each["error"]) for each in both]
+            rows.append([FORMULAE.get(formula, formula), kind, f"{nm:g} nm", *cells, str(n)])
         parts.append(
             f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
             "printed and all else as in the consistent model. Medians of the ratio to the same grain in the consistent "

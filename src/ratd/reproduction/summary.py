@@ -320,16 +320,18 @@ def _without_thin_cells(data):
     words = []
     for drive, table in data.tables.items():
         large = split_sizes(table)[-1]
-        number_in = large.groupby(cell_of(large))["seed"].transform("size")
-        kept = large[number_in >= FEW]
-        powers = slopes(kept) if len(kept) < len(large) else pd.DataFrame(columns=["above"])
+        cell = cell_of(large)
+        count = np.bincount(cell)
+        thin, kept = np.count_nonzero(count < FEW), large[count[cell] >= FEW]
+        if not thin:
+            continue
+        powers = slopes(kept)
         told = [
             f"{row['type']} {with_error(row['above'], row['above_error'])} "
             f"({sizes_of(kept[kept['type'] == row['type']])})"
             for _, row in powers[powers["above"].notna()].iterrows()
         ]
         if told:
-            thin = large.assign(cell=cell_of(large))[number_in < FEW]["cell"].nunique()
             words.append(
                 f" {thin} of the large cells of the drive `{drive}` have fewer than {FEW} grains, and count as much as "
                 f"the others; without them the power is {', '.join(told)}."
