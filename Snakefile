@@ -37,14 +37,6 @@ try:
 except InputError as error:
     sys.exit(str(error))
 
-if PLAN.config["engine"] == "cuda":
-    from ratd.cuda.device import require
-
-    try:
-        require()
-    except InputError as error:
-        sys.exit(str(error))
-
 jobs.release_stale_locks()
 CODE = jobs.code_hashes(Path(workflow.basedir, "workflow", "scripts"))
 
@@ -101,6 +93,17 @@ rule write_config:
         "Write down the config"
     script:
         "workflow/scripts/write_config.py"
+
+
+# Jobs that run elsewhere, on a cluster or in an environment of their own, look for themselves.
+onstart:
+    if jobs.gpu_needed(workflow):
+        from ratd.cuda.device import require
+
+        try:
+            require()
+        except InputError as error:
+            sys.exit(str(error))
 
 
 # What is finished needs no pieces any more: a forced rerun is to compute it anew.

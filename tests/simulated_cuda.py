@@ -1,5 +1,5 @@
-"""The engine on CUDA in numba's simulation, against the engine on the processor. Run by test_cuda.py in a process of
-its own, because the simulation has to be asked for before numba is imported:
+"""The kernels of the engine on CUDA in numba's simulation, against the engine on the processor. Run by test_cuda.py in
+a process of its own, because the simulation has to be asked for before numba is imported:
 
 NUMBA_ENABLE_CUDASIM=1 python -m pytest tests/simulated_cuda.py
 NUMBA_ENABLE_CUDASIM=1 PYTHONPATH=tests python -m pytest -p watched_cuda tests/simulated_cuda.py
@@ -7,15 +7,11 @@ NUMBA_ENABLE_CUDASIM=1 PYTHONPATH=tests python -m pytest -p watched_cuda tests/s
 The second line watches all accesses to memory for races (see watched_cuda.py).
 """
 
-import sys
 import time
 
 import numpy as np
 import pytest
-import xarray as xr
 
-import ratd
-from ratd import spinup
 from ratd.cuda import advance, arena, block, body
 from ratd.cuda import spin_up as cuda_spin_up
 from ratd.cuda.advance import PAUSED, advance_grains
@@ -37,17 +33,13 @@ from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
 from ratd.grain import connected_components
 from ratd.growth import grow
-from ratd.materials import MATERIALS, equilibrium_compression
+from ratd.materials import MATERIALS
 from ratd.neighbours import close_pairs
 from ratd.spinup import _record, spin_up
+from runs_cuda import FAST, assert_close, assert_same_run, copy, pressed_pair
 
 MATERIAL = MATERIALS["q-S"]
 THREADS = 3
-SLACK = 1e4 if "watched_cuda" in sys.modules else 1.0
-"""Factor of tolerances. Where accesses to memory are watched, functions of the engine on the processor run uncompiled
-on the device only, and round a little otherwise."""
-FIELDS = [name for name in ratd.engine.state.State._fields if name != "force"]
-
 if not SIMULATED:
     pytest.skip("the simulation has to be asked for by NUMBA_ENABLE_CUDASIM=1", allow_module_level=True)
 
@@ -69,48 +61,6 @@ def shaken(kind, size, seed, displacement=0.0):
         pointer += displacement * rng.normal(size=pointer.shape)
         pointer /= np.linalg.norm(pointer, axis=1, keepdims=True)
     return state
-
-
-def copy(state):
-    return state._replace(**{name: array.copy() for name, array in state._asdict().items()})
-
-
-def contact_rows(state):
-    """All fields of the contacts, one contact a row."""
-    return np.moveaxis(contact_blocks(state), 1, 2).reshape(-1, layout.N_FIELDS)[: state.counter[layout.CONTACTS]]
-
-
-def assert_close(found, expected, tolerance=1e-12):
-    """Every array and every column of the monomers and every field of the contacts, relative to its greatest value."""
-    for name in FIELDS:
-        a, b = np.asarray(getattr(found, name)), np.asarray(getattr(expected, name))
-        if name == "monomer":
-            a, b = monomer_rows(found), monomer_rows(expected)
-        elif name == "contact":
-            a, b = (
-                np.moveaxis(contact_blocks(state), 1, 2).reshape(-1, layout.N_FIELDS) for state in (found, expected)
-            )
-            a, b = a[: found.counter[layout.CONTACTS]], b[: expected.counter[layout.CONTACTS]]
-        if a.dtype.kind in "iu":
-            if name == "counter":  # the number of searches may differ
-                a, b = a[: layout.SEARCHES], b[: layout.SEARCHES]
-            if name == "fragment":
-                a, b = a[: found.counter[layout.MONOMERS]], b[: expected.counter[layout.MONOMERS]]
-            np.testing.assert_array_equal(a, b, err_msg=name)
-        elif a.ndim == 2 and len(a):
-            scale = np.abs(b).max(axis=0)
-            for first in (0, 4, 8) if name == "monomer" else ():
-                scale[first : first + 3] = scale[first : first + 3].max()
-            assert (np.abs(a - b) <= SLACK * tolerance * scale).all(), (
-                name,
-                np.abs(a - b).max(axis=0) / (scale + 1e-300),
-            )
-        elif a.ndim == 1:
-            if name == "scalar":  # what turns the grain back is a small rest of spins of 1e8 rad/s
-                small = [layout.UNWIND, layout.EXCESS]
-                np.testing.assert_allclose(a[small], b[small], rtol=tolerance, atol=1e-8)
-                a, b = np.delete(a, small), np.delete(b, small)
-            np.testing.assert_allclose(a, b, rtol=tolerance, atol=1e-12 * tolerance, err_msg=name)
 
 
 @kernel
@@ -399,87 +349,11 @@ def test_residual_force_is_that_of_the_processor():
     np.testing.assert_allclose(found, cpu_advance.residual_force(state), rtol=1e-12)
 
 
-FAST = dict(angular_acceleration=4e18, records=20)
-
-
-@pytest.fixture(scope="module")
-def grains():
-    return [grow("BA", 55e-9, "q-S", 0), pressed_pair(20e-9), grow("BAM2", 55e-9, "q-S", 0)]
-
-
-def pressed_pair(a):
-    """Two monomers that overlap by more than in equilibrium, so that there is something to relax."""
-    delta_0 = equilibrium_compression(a / 2, MATERIAL.surface_energy, MATERIAL.reduced_modulus)
-    return ratd.Grain(np.array([[0.0, 0, 0], [2 * a - 1.1 * delta_0, 0, 0]]), np.array([a, a]), MATERIAL)
-
-
-@pytest.fixture(scope="module")
-def runs(grains):
-    return spin_up_many(grains, snapshots=[0], snapshot_every=20, **FAST)
-
-
-def assert_same_run(found, expected, tolerance):
-    assert found.sizes == expected.sizes
-    for name, value in expected.attrs.items():
-        if not (isinstance(value, float) and np.isnan(value)):
-            assert found.attrs[name] == (pytest.approx(value, rel=tolerance) if isinstance(value, float) else value), (
-                name
-            )
-    for name in expected.data_vars:
-        values = expected[name].values
-        scale = np.nanmax(np.abs(values)) if values.size else 0.0
-        np.testing.assert_allclose(found[name].values, values, rtol=0, atol=tolerance * scale, err_msg=name)
-
-
-def test_whole_runs_are_those_of_the_processor(grains, runs):
-    """Relaxation, records, snapshots, breaking, fragments lost: up to rounding, which has little time to grow here."""
-    assert runs[0].sizes["fragment"] >= 1 and runs[0].sizes["snapshot"] >= 3
-    for number, grain in enumerate(grains):
-        expected = spin_up(grain, snapshot_every=20 if number == 0 else 0, **FAST)
-        assert_same_run(runs[number], expected, 1e-8)
-
-
-def test_literal_drive_and_explicit_damping(grains):
-    settings = dict(drive="literal", damping="explicit", timestep_factor=0.02, max_steps=100, **FAST)
-    (found,) = spin_up_many(grains[:1], **settings)
-    expected = spin_up(grains[0], **settings)
-    assert found.attrs["end_reason"] == "max_steps reached" and found.attrs["steps"] == 100
-    assert_same_run(found, expected, 1e-8)
-
-
-def test_killed_runs_go_on_with_the_same_bits(grains, tmp_path, monkeypatch):
-    """Killed twice between launches, with short segments."""
-    monkeypatch.setattr(cuda_spin_up, "SEGMENT", 1)
-    monkeypatch.setattr(cuda_spin_up, "CHECKPOINT_INTERVAL", 0.0)
-    settings = dict(max_steps=60, **FAST)
-    undisturbed = spin_up_many(grains[:2], **settings)
-    paths = [tmp_path / f"{number}.checkpoint" for number in range(2)]
-    launch, launches = cuda_spin_up._launch, []
-
-    def dying(*arguments):
-        launches.append(1)
-        if len(launches) in (4, 6):
-            raise KeyboardInterrupt
-        launch(*arguments)
-
-    monkeypatch.setattr(cuda_spin_up, "_launch", dying)
-    kept = {}
-    for _ in range(2):
-        with pytest.raises(KeyboardInterrupt):
-            spin_up_many(grains[:2], checkpoints=paths, done=kept.__setitem__, **settings)
-    assert any(path.exists() for path in paths)
-    resumed = spin_up_many(grains[:2], checkpoints=paths, **settings)
-    for found, expected in zip(resumed, undisturbed, strict=True):
-        xr.testing.assert_identical(found, expected)
-    for number, found in kept.items():
-        xr.testing.assert_identical(found, undisturbed[number])
-
-
 @pytest.mark.parametrize("per_slot", [1, 4])
-def test_a_grain_that_needs_more_room_gets_it(grains, monkeypatch, per_slot):
+def test_a_grain_that_needs_more_room_gets_it(monkeypatch, per_slot):
     """All pairs of monomers count as near: at first there is no room for their list, or for contacts of all of them."""
-    many = grow("BAM1", 50e-9, "q-S", 0)
-    n = many.n_monomers
+    grains = [pressed_pair(20e-9), grow("BAM1", 50e-9, "q-S", 0)]
+    n = grains[1].n_monomers
     assert layout.LANES < n * (n - 1) // 2 < 2 * layout.LANES
     monkeypatch.setattr(advance, "NEAR", 50.0)
     monkeypatch.setattr(advance, "FAR", 60.0)
@@ -488,59 +362,7 @@ def test_a_grain_that_needs_more_room_gets_it(grains, monkeypatch, per_slot):
     slots = []
     with_room = cuda_spin_up.with_room
     monkeypatch.setattr(cuda_spin_up, "with_room", lambda state, room: slots.append(room) or with_room(state, room))
-    found = spin_up_many([grains[1], many], max_steps=20, **FAST)
+    found = spin_up_many(grains, max_steps=20, **FAST)
     assert slots and set(slots) == {2 * layout.LANES}
-    for run, grain in zip(found, [grains[1], many], strict=True):
+    for run, grain in zip(found, grains, strict=True):
         assert_same_run(run, spin_up(grain, max_steps=20, **FAST), 1e-8)
-
-
-def test_a_grain_that_fails_does_not_stop_the_others(grains, monkeypatch):
-    begin = cuda_spin_up.Run.begin
-
-    def spoilt(run, state):
-        begin(run, state)
-        if run.grain is grains[1]:
-            monomer_rows(run.state)[0, 4] = np.nan
-
-    monkeypatch.setattr(cuda_spin_up.Run, "begin", spoilt)
-    finished = {}
-    with pytest.raises(RuntimeError, match="grain 0: the integration failed"):
-        spin_up_many([grains[1], grains[0]], done=finished.__setitem__, max_steps=50, **FAST)
-    assert list(finished) == [1]
-
-
-def test_relaxation_ends_where_that_of_the_processor_ends(grains, monkeypatch):
-    """The pair was pressed: it takes the same number of steps until it rests, and then looks the same."""
-    rested = []
-    settle = spinup.settle
-
-    def noted(state, timestep_factor):
-        rested.append(copy(state))
-        settle(state, timestep_factor)
-
-    monkeypatch.setattr(spinup, "settle", noted)
-    monkeypatch.setattr(cuda_spin_up, "settle", noted)
-    (found,) = spin_up_many(grains[1:2], max_steps=1, **FAST)
-    expected = spin_up(grains[1], max_steps=1, **FAST)
-    assert rested[0].counter[layout.STEPS] == rested[1].counter[layout.STEPS] > 0
-    assert_close(rested[0], rested[1], 1e-9)
-    assert_same_run(found, expected, 1e-9)
-
-
-def test_relaxation_does_not_depend_on_the_company(grains, monkeypatch):
-    """Another grain asks for more room while the pressed pair relaxes, so that both go on in a new batch."""
-    monkeypatch.setattr(cuda_spin_up, "SEGMENT", 1)
-    (alone,) = spin_up_many(grains[1:2], max_steps=20, **FAST)
-    take, asked = cuda_spin_up.Spinning.take, []
-
-    def asking(one, batch, place):
-        full = take(one, batch, place)
-        if one.number == 1 and len(asked) < 2:
-            asked.append(one)
-            return True
-        return full
-
-    monkeypatch.setattr(cuda_spin_up.Spinning, "take", asking)
-    found, _ = spin_up_many([grains[1], grains[0]], max_steps=20, **FAST)
-    assert len(asked) == 2
-    xr.testing.assert_identical(found, alone)

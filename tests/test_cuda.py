@@ -9,14 +9,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import yaml
+from scipy.stats import ks_2samp
 
 import tiny_pipeline
-from ratd import io
+from ratd import io, jobs
 from ratd.cuda import device
 from ratd.cuda.arena import Batch
+from ratd.cuda.spin_up import spin_up_many
 from ratd.engine.state import new_state
 from ratd.errors import InputError
 from ratd.growth import grow
+from ratd.marks import disruption
+from ratd.spinup import spin_up
 
 SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1"}
 TINY = {
@@ -46,28 +50,56 @@ def usable():
 no_gpu = pytest.mark.skipif(usable(), reason="there is a GPU")
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["simulated_cuda.py"],
-        # killed and resumed: the same kernels once more
-        ["-p", "watched_cuda", "racing_cuda.py", "simulated_cuda.py", "-k", "not killed"],
-    ],
-    ids=["numbers", "races"],
-)
-def test_kernels_in_simulation(arguments):
-    """In a process of their own; the simulation has to be asked for before numba is imported."""
+needs_gpu = pytest.mark.skipif(not usable(), reason="there is no GPU")
+
+
+def run_tests(*arguments, **environment):
+    """Run tests in a process of their own, where numba is imported with other variables in its environment."""
     folder = Path(__file__).parent
     paths = os.pathsep.join(filter(None, [str(folder), os.environ.get("PYTHONPATH")]))
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *arguments],
         cwd=folder,
-        env=os.environ | SIMULATED | {"PYTHONPATH": paths},
+        env=os.environ | environment | {"PYTHONPATH": paths},
         capture_output=True,
         text=True,
         timeout=1200,
     )
     assert done.returncode == 0 and "skipped" not in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulated_cuda.py", "runs_cuda.py"],
+        # killed and resumed: the same kernels once more
+        ["-p", "watched_cuda", "racing_cuda.py", "simulated_cuda.py", "runs_cuda.py", "-k", "not killed"],
+    ],
+    ids=["numbers", "races"],
+)
+def test_kernels_in_simulation(arguments):
+    run_tests(*arguments, **SIMULATED)
+
+
+@needs_gpu
+def test_whole_runs_on_the_device():
+    run_tests("runs_cuda.py")
+
+
+@needs_gpu
+def test_omega_disr_of_200_grains_is_that_of_the_processor():
+    """Rounding grows until contacts break in another order: a grain may differ, the distribution of a type may not."""
+    settings = dict(drive="prescribed", epsilon=0.1)
+    ratios = []
+    for kind in ("BA", "BAM2"):
+        grains = [grow(kind, 80e-9, "q-S", seed) for seed in range(100)]
+        found, expected = (
+            np.array([float(disruption(run)["omega_disr"]) for run in runs])
+            for runs in (spin_up_many(grains, **settings), [spin_up(grain, **settings) for grain in grains])
+        )
+        assert ks_2samp(found, expected).pvalue > 0.01
+        ratios.append(found / expected)
+    assert np.median(np.abs(np.concatenate(ratios) - 1.0)) < 0.02
 
 
 @no_gpu
@@ -83,8 +115,33 @@ def test_pipeline_without_gpu_ends_with_one_sentence_before_any_job(tmp_path):
     done = pipeline.run()
     assert done.returncode != 0
     *remarks, sentence = [line for line in done.stdout.splitlines() if line]
-    assert sentence.startswith("engine is cuda, but ") and len(remarks) == 2
+    assert sentence.startswith("engine is cuda, but ")
+    assert remarks[-1].startswith("total ") and "Error" not in done.stdout  # no job, nothing but the plan of all jobs
     assert not (tmp_path / "results").exists()
+
+
+@no_gpu
+def test_pipeline_without_gpu_plans_and_computes_what_needs_none(tmp_path):
+    pipeline = tiny_pipeline.Pipeline(tmp_path)
+    pipeline.write_config(TINY | {"engine": "cuda"})
+    assert pipeline.planned("spinups")["spin_up_cuda_prescribed_q-S_BA"] == 1
+    done = pipeline.run("grains")
+    assert done.returncode == 0, done.stdout
+    assert pipeline.planned("grains") == {}
+
+
+@pytest.mark.parametrize("here", [True, False])
+@pytest.mark.parametrize("environments", [set(), {"conda"}])
+@pytest.mark.parametrize("resources", [{"gpu": 1, "mem_mb": 500}, {"mem_mb": 500}])
+def test_gpu_is_asked_for_where_a_job_is_to_use_it(here, environments, resources):
+    """Not on the host that sends jobs to a cluster, nor beside the environments that jobs have of their own."""
+    jobs_to_run = [SimpleNamespace(resources={"mem_mb": 500}), SimpleNamespace(resources=resources)]
+    workflow = SimpleNamespace(
+        local_exec=here,
+        deployment_settings=SimpleNamespace(deployment_method=environments),
+        dag=SimpleNamespace(needrun_jobs=lambda: iter(jobs_to_run)),
+    )
+    assert jobs.gpu_needed(workflow) == (here and not environments and "gpu" in resources)
 
 
 def test_pipeline_writes_the_files_of_the_other_engine(tmp_path):

@@ -79,6 +79,23 @@ def code_hashes(scripts):
     return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
 
 
+def gpu_needed(workflow):
+    """Whether this process needs a GPU for what is to be computed.
+
+    Parameters
+    ----------
+    workflow : snakemake.workflow.Workflow
+        About to start, its jobs known.
+
+    Returns
+    -------
+    bool
+        False for jobs that run on a cluster, or in an environment of their own.
+    """
+    here = workflow.local_exec and not workflow.deployment_settings.deployment_method
+    return here and any("gpu" in job.resources.keys() for job in workflow.dag.needrun_jobs())
+
+
 class Job:
     """One job, as a context: logs to its file and the terminal, and ends with one sentence on bad input.
 
@@ -174,21 +191,15 @@ class Job:
         block = Block(Path(target), material, list(seeds), self.provenance)
 
         def make_all(waiting, done):
-            failed = []
             for number, (block, seed) in enumerate(waiting):
                 try:
                     row = make(seed, block.checkpoint(seed))
                 except RuntimeError as error:
                     if type(error) is not RuntimeError:  # a subclass is no matter of this grain
                         raise
-                    self.log.error(f"seed {seed}: {error}")
-                    failed.append(f"seed {seed}: {error}")
+                    done(number, failure=error)
                 else:
                     done(number, row)
-            if failed:
-                raise InputError(
-                    f"{target}: {len(failed)} of {len(waiting)} grains failed, the others are kept: {'; '.join(failed)}"
-                )
 
         self.blocks([block], kind, make_all)
 
@@ -203,7 +214,12 @@ class Job:
         make : callable
             ``make(waiting, done)`` computes the grains that are not finished yet, ``waiting``, a list of pairs of a
             block and a seed, in any order. It calls ``done(number, row)`` with the place in this list and the row
-            (see `ratd.io`) of each grain that it has finished.
+            (see `ratd.io`) of each grain that it has finished, or ``done(number, failure=reason)``.
+
+        Raises
+        ------
+        InputError
+            If grains failed: one sentence with the seed and the reason of each.
         """
         with ExitStack() as locks:
             for block in sorted(blocks, key=lambda block: block.target):
@@ -214,27 +230,37 @@ class Job:
             kept = every - len(waiting)
             finished = kept
             start = time.monotonic()
+            failures = []
+            where = blocks[0].target if len(blocks) == 1 else f"{len(blocks)} files"
 
-            def done(number, row):
+            def done(number, row=None, *, failure=None):
                 nonlocal finished, start
                 block, seed = waiting[number]
+                name = f"{block.target.parent.name} seed {seed}" if len(blocks) > 1 else f"seed {seed}"
+                if failure is not None:
+                    failures.append(f"{name}: {failure}")
+                    self.log.error(failures[-1])
+                    return
                 pieces[block.target].add(seed, row)
                 finished += 1
                 seconds = time.monotonic() - start
                 start = time.monotonic()
-                place = f"{block.target.parent.name} " if len(blocks) > 1 else ""
-                self.log.info(f"{place}seed {seed}: done in {seconds:.1f} s ({finished} of {every} grains)")
+                self.log.info(f"{name}: done in {seconds:.1f} s ({finished} of {every} grains)")
 
             try:
                 if waiting:
                     make(waiting, done)
+                if failures:
+                    raise InputError(
+                        f"{where}: {len(failures)} of {len(waiting)} grains failed, the others are kept: "
+                        + "; ".join(failures)
+                    )
             except BaseException:
                 for own in pieces.values():
                     own.write()
                 raise
             for own in pieces.values():
                 own.join()
-            where = blocks[0].target if len(blocks) == 1 else f"{len(blocks)} files"
             self.log.info(f"{every} grains written to {where}, {kept} of them were finished before")
 
     def provenance_of(self, settings, inputs):

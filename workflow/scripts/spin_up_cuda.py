@@ -24,6 +24,7 @@ with Job(snakemake) as job:
             checkpoints=[block.checkpoint(seed) for block, seed in waiting],
             progress=[job.progress(seed, f"{block.target.parent.name} ") for block, seed in waiting],
             done=lambda number, run: done(number, io.run_row(run)),
+            failed=lambda number, reason: done(number, failure=reason),
             snapshots=[k for k, (target, seed) in enumerate(places) if seed in settings[target]["snapshot_seeds"]],
             snapshot_every=max(own["snapshot_every"] for own in job.settings),
             **{name: common[name] for name in ("drive", "epsilon", "angular_acceleration")},

@@ -6,6 +6,7 @@ for tests. The functions of the CPU engine that a kernel calls are compiled for 
 """
 
 import os
+from contextlib import contextmanager
 
 # Says so at each of the few launches of the last grains; there is nothing that a user could do.
 os.environ.setdefault("NUMBA_CUDA_LOW_OCCUPANCY_WARNINGS", "0")
@@ -13,12 +14,13 @@ os.environ.setdefault("NUMBA_CUDA_LOW_OCCUPANCY_WARNINGS", "0")
 import numba
 import numpy as np
 from numba import cuda as numba_cuda
+from numba.cuda.cudadrv.driver import CudaAPIError
 
 from ratd.errors import InputError
 
 __all__ = [
-    "MAX_THREADS", "MIN_THREADS", "SIMULATED", "cuda", "device_function", "fetch", "kernel", "require", "send",
-    "upload",
+    "MAX_THREADS", "MIN_THREADS", "SIMULATED", "cuda", "device_function", "failure_in_words", "fetch", "kernel",
+    "require", "send", "upload",
 ]  # fmt: skip
 
 SIMULATED = bool(numba.config.ENABLE_CUDASIM)
@@ -99,9 +101,13 @@ def require():
     try:
         reason = _hindrance()
     except Exception as error:  # whatever the driver says, the user needs one sentence
-        reason = (str(error).strip().splitlines() or [type(error).__name__])[-1]
+        reason = _last_line(error)
     if reason:
         raise InputError(f"engine is cuda, but {reason}; a GPU of NVIDIA with its driver is needed, or engine: cpu.")
+
+
+def _last_line(error):
+    return (str(error).strip().splitlines() or [type(error).__name__])[-1]
 
 
 def _hindrance():
@@ -120,6 +126,22 @@ def _hindrance():
     if gpu.KERNEL_EXEC_TIMEOUT:
         return "the GPU drives a display, whose time limit ends long kernels"
     return None
+
+
+@contextmanager
+def failure_in_words():
+    """Turn what the driver says of a failure (no memory left, a device that was lost) into one sentence.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        yield
+    except CudaAPIError as error:
+        raise InputError(
+            f"the GPU failed ({_last_line(error)}): the same command goes on from what is kept, or engine: cpu."
+        ) from error
 
 
 def upload(array):

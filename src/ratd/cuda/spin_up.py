@@ -8,7 +8,7 @@ from ratd.cuda.advance import PAUSED, RESTED, advance_grains
 from ratd.cuda.arena import (
     CODE, FEWEST, GOALS, KINETIC, RELAXING, RESIDUAL, ROW_COLUMNS, ROWS, SEGMENT_END, STEPS_GOAL, Batch, write_drive,
 )  # fmt: skip
-from ratd.cuda.device import MAX_THREADS, MIN_THREADS, SIMULATED, cuda, require, upload
+from ratd.cuda.device import MAX_THREADS, MIN_THREADS, SIMULATED, cuda, failure_in_words, require, upload
 from ratd.drives import AT_REST, OMEGA_RAT
 from ratd.engine.advance import FULL, NOT_FINITE
 from ratd.engine.layout import STEPS
@@ -160,7 +160,9 @@ class Spinning:
         return False
 
 
-def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshots=(), snapshot_every=0, **settings):
+def spin_up_many(
+    grains, *, checkpoints=None, progress=None, done=None, failed=None, snapshots=(), snapshot_every=0, **settings
+):
     """Spin many grains up at once on a GPU, each until one contact is left.
 
     Parameters
@@ -172,6 +174,8 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
         One for each grain, see `ratd.spinup.spin_up`.
     done : callable, optional
         Called as ``done(number, run)`` as soon as the run of a grain is finished.
+    failed : callable, optional
+        Called as ``failed(number, reason)`` as soon as a grain fails.
     snapshots : collection of int
         Numbers of the grains that get snapshots.
     snapshot_every : int
@@ -184,14 +188,14 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
     -------
     list of xarray.Dataset
         The runs in the order of the grains, each as `ratd.spinup.spin_up` gives it. A grain gives the same bits on one
-        kind of device, with and without interruption and in whatever company.
+        kind of device, with and without interruption and in whatever company. None for one that failed.
 
     Raises
     ------
     InputError
-        If there is no GPU, or an argument is not usable.
+        If there is no GPU, it fails, or an argument is not usable.
     RuntimeError
-        If a grain fails; the others are finished before.
+        If a grain fails and `failed` is not given; the others are finished before.
     """
     require()
     grains = list(grains)
@@ -209,7 +213,9 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
     failures = []
 
     def note(one):
-        if one.failure is not None:
+        if one.failure is not None and failed is not None:
+            failed(one.number, one.failure)
+        elif one.failure is not None:
             failures.append(f"grain {one.number}: {one.failure}")
         else:
             finished[one.number] = one.run.dataset()
@@ -218,9 +224,10 @@ def spin_up_many(grains, *, checkpoints=None, progress=None, done=None, snapshot
                 done(one.number, finished[one.number])
 
     saving = Saving()
-    while at_work:
-        _work(at_work, note, saving)
-        at_work = [one for one in at_work if not one.over]
+    with failure_in_words():
+        while at_work:
+            _work(at_work, note, saving)
+            at_work = [one for one in at_work if not one.over]
     if failures:
         raise RuntimeError("; ".join(failures))
     return finished
