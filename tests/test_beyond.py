@@ -14,6 +14,7 @@ from ratd.beyond import (
     fragment_shares,
     oblate_counts,
     power_law,
+    size_law,
     slopes,
 )
 from ratd.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
@@ -71,6 +72,32 @@ def test_a_grain_that_one_predictor_cannot_predict_counts_for_none(table):
 
     with pytest.raises(InputError, match="predictor is 'Eq. 34'"):
         cross_validation(table, predictors=("Eq. 34",))
+
+
+@pytest.mark.parametrize("by", ["size", "fold"])
+def test_a_power_of_size_predicts_what_goes_with_size_and_material_alone(table, by):
+    """Each type has a constant and a power of its own; materials differ as sqrt(gamma/rho)."""
+    constant, power = ({"BA": 0.5, "BAM1": 1.5, "BAM2": 3.0}, {"BA": 2.0, "BAM1": 1.5, "BAM2": 1.2})
+    table = table.assign(omega_disr=0.0)
+    for k, row in table.iterrows():
+        material, x = get_material(row["material"]), row["a_eff"] / 300e-9
+        unit = np.sqrt(material.surface_energy / (material.density * 300e-9**3))
+        table.loc[k, "omega_disr"] = constant[row["type"]] * unit * x ** -power[row["type"]]
+    assert scatter_of(cross_validation(table, by=by), "all", "power of size")["scatter"] < 1e-9
+    law = size_law(table).set_index("type")
+    for kind, own in law.iterrows():
+        assert own["C"] == pytest.approx(constant[kind], rel=1e-9) and own["p"] == pytest.approx(power[kind], rel=1e-9)
+        assert own["scatter"] < 1e-9 and own["C_error"] < 1e-9 and own["p_error"] < 1e-9
+    assert not len(size_law(table[np.isclose(table["a_eff"], SIZES[0])]))
+
+
+def test_errors_of_the_law_of_size_are_the_scatter_between_ensembles():
+    rng, table = np.random.default_rng(5), make_table(materials=["q-S"], types=["BAM2"], sizes=SIZES, seeds=6)
+    line = 1e8 * (table["a_eff"] / 300e-9) ** -1.5
+    found = pd.concat(size_law(table.assign(omega_disr=line * rng.lognormal(0, 0.2, len(table)))) for _ in range(60))
+    for name in ("C", "p"):
+        assert found[f"{name}_error"].mean() == pytest.approx(found[name].std(), rel=0.3)
+    assert found["scatter"].mean() == pytest.approx(0.2, rel=0.05) and found["p"].mean() == pytest.approx(1.5, abs=0.02)
 
 
 @pytest.mark.parametrize("by", ["size", "fold"])

@@ -7,7 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from ratd.beyond import slopes
 from ratd.reproduction import course, disrupted, peak, shapes, structure, summary
+from ratd.reproduction.argument import by_frame_and_type
+from ratd.reproduction.bounds import table3_omega
+from ratd.reproduction.paper import PRINTED
+from ratd.reproduction.text import Answer, Row
+from ratd.validation.lammps import COMPARISONS
 from synthetic_runs import make_run, make_table, marked
 
 
@@ -102,7 +108,7 @@ def test_grains_that_become_oblate_are_counted_by_pairs(table):
                    for k, axis in enumerate("abc")}  # fmt: skip
         own = table.assign(**columns)
         own.loc[0, "axis_a_disr"] = np.nan
-        found = shapes._more_oblate(own, None)
+        found = shapes.more_oblate(own, None)
         assert found.holds is became  # no change is none
         assert found.text.startswith(f"{became - (start is oblate and end is prolate)} (")
 
@@ -218,7 +224,7 @@ def test_growth_of_the_axis_ratios_is_told_by_type(table):
     end = {"axis_a_disr": 1.0, "axis_b_disr": 1.1 * first, "axis_c_disr": 1.4 * first * second}
     own = table.assign(**start, **end)
     told = shapes._deformation({"prescribed": own, "literal": own.assign(axis_c_disr=np.nan)})
-    assert "by factors of prescribed BAM1 1.5 and 1.2, BAM2 1 and 1. " in told
+    assert "by factors of prescribed BAM1 1.5 and 1.2, BAM2 1 and 1." in told
 
 
 def test_share_of_oblate_grains_is_set_beside_that_of_200_nm():
@@ -240,7 +246,64 @@ def test_powers_of_size_are_told_without_cells_of_few_grains():
     few = table["a_eff"] > 420e-9
     table = table[~few | (table["seed"] == 0)]
     table = table.assign(omega_disr=np.where(table["a_eff"] > 420e-9, 0.1, 1.0) / table["a_eff"])
-    told = summary._without_thin_cells(SimpleNamespace(tables={"prescribed": table}))
+    data = SimpleNamespace(tables={"prescribed": table})
+    powers = slopes(summary.without_thin_cells(table))
+    assert powers["above"].tolist() == pytest.approx([-1.0] * 3) and (powers["sizes_above"] == 2).all()
+    told = summary._with_thin_cells(data)
     assert told.startswith(" 18 of the large cells of the drive `prescribed` have fewer than 3 grains")
-    assert told.endswith(" is BA -1 (300–400 nm), BAM1 -1 (300–400 nm), BAM2 -1 (300–400 nm).")
-    assert summary._without_thin_cells(SimpleNamespace(tables={"literal": table[table["a_eff"] < 420e-9]})) == ""
+    steep = slopes(table).set_index("type")["above"]
+    assert (steep < -3).all() and re.search(rf"the power is BA {steep['BA']:.2f} ± ", told)
+    full = table[table["a_eff"] < 420e-9]
+    assert summary._with_thin_cells(SimpleNamespace(tables={"literal": full})) == ""
+    assert summary.without_thin_cells(full).equals(full)
+
+
+def test_lammps_is_told_by_frame_and_type():
+    """BA at 0.8, BAM2 at 1.1 in the inertial frame; both alike, and no BAM2 of one way, in the others."""
+    rows = [
+        {"start": start, "code": code, "type": kind, "a_eff": 1e-7, "seed": seed, "mark": "first loss"}
+        | {"ratd": (1e8, 1e8), "LAMMPS": (ratio * 1e8,) * 2}
+        for (start, code), ratios in zip(COMPARISONS, ({"BA": 0.8, "BAM2": 1.1}, {"BA": 1.0}, {"BA": 1.0}), strict=True)
+        for kind, ratio in ratios.items() for seed in range(3)
+    ]  # fmt: skip
+    first, *others = by_frame_and_type(rows).split("; ")
+    assert first.startswith("BA 0.8, BAM2 1.1 (") and all(other.startswith("BA 1 (") for other in others)
+    assert len(others) == 2
+
+
+def test_exact_term_is_set_beside_the_printed_fit():
+    """Runs of the exact term that lost mass count, not those of the explicit one, and none of the consistent drive."""
+    grown = make_table(materials=["q-S"], sizes=(100e-9, 200e-9), seeds=2)
+    printed = table3_omega(grown)
+    runs = grown.assign(
+        drive="literal", coriolis="exact", omega_first_loss=np.where(grown["seed"] == 0, 3, 5) * printed
+    )
+    lost = grown["type"] != "BA"
+    study = pd.concat(
+        [
+            runs.assign(omega_first_loss=runs["omega_first_loss"].where(lost)),
+            runs.assign(coriolis="explicit", omega_first_loss=0.0),
+            runs.assign(drive="prescribed", omega_first_loss=0.0),
+        ]
+    )
+    plan = SimpleNamespace(materials=None)
+    found = summary.exact_over_printed(SimpleNamespace(grown=grown, plan=plan), study)
+    assert found.to_dict() == {(kind, nm): pytest.approx(4.0) for kind in ("BAM1", "BAM2") for nm in (100, 200)}
+
+
+def test_main_findings_are_grouped_by_the_drives_that_show_them():
+    verdicts = {"easier": (True, True), "order": (False, True), "flattening": (False, False), "quarter": (None, False)}
+    rows = [
+        Row(key, {drive: Answer(holds=holds) for drive, holds in zip(("prescribed", "literal"), both, strict=True)})
+        for key, both in verdicts.items()
+    ]
+    (line,) = summary._main_findings(rows, ["prescribed", "literal"])
+    for words in (
+        f"seen with `prescribed` and `literal`: {summary.MAIN['easier']};",
+        f"seen with `literal`: {summary.MAIN['order']};",
+        f"seen in none: {summary.MAIN['flattening']};",
+        f"not decided, or not seen: {summary.MAIN['quarter']}.",
+    ):
+        assert words in line
+    assert set(summary.MAIN) <= set(PRINTED)
+    assert summary._main_findings([], ["prescribed"]) == []

@@ -21,6 +21,7 @@ PREDICTORS = {
     "Eq. 33": "its A and alpha fitted anew for each material and type, 18 numbers for the paper's grains",
     "cut bound": "c times the cut bound, one c for all grains",
     "cut bound by type": "c times the cut bound, one c a type, 3 numbers",
+    "power of size": f"C sqrt(gamma/(rho a³)) (a_eff/a)^-p, a = {SPLIT * 1e9:g} nm, C and p of each type, 6 numbers",
 }
 """What is compared out of sample, and what each of them fits."""
 SEPARATE = "Eq. 33, separate exponents"
@@ -29,8 +30,10 @@ LEFT_OUT = {"size": "one size left out", "fold": "a fifth of the grains left out
 """Ways to leave grains out of a fit, in words."""
 
 
-def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, predictors=tuple(PREDICTORS)):
-    """How well Eq. 33 and the cut bound predict omega of grains that they were not fitted to.
+def cross_validation(
+    table, mark="omega_disr", by="size", folds=5, seed=0, predictors=tuple(PREDICTORS), materials=None
+):
+    """How well Eq. 33, the cut bound and a power of size predict omega of grains that they were not fitted to.
 
     Parameters
     ----------
@@ -47,6 +50,8 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, predi
         Of the folds and of the bootstrap.
     predictors : sequence of str
         Of `PREDICTORS` and `SEPARATE`.
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
 
     Returns
     -------
@@ -69,7 +74,7 @@ def cross_validation(table, mark="omega_disr", by="size", folds=5, seed=0, predi
             raise InputError(f"cross_validation: predictor is {name!r}, allowed are {', '.join(map(repr, _PREDICT))}")
     needed = [mark, "cut_bound", "n_monomers", "n_contacts", "filling_factor", "a_eff"]
     table = table[(table[needed].astype(float) > 0).all(axis=1)]
-    grains = _Grains(table, mark)
+    grains = _Grains(table, mark, materials)
     rng = np.random.Generator(np.random.PCG64(seed))
     group = grains.size if by == "size" else rng.permutation(len(table)) % folds
     residual = np.full((len(table), len(predictors)), np.nan)
@@ -132,7 +137,7 @@ def fitted_numbers(fit, reading):
 class _Grains:
     """What is predicted of the grains of a table, and what from, as arrays, of which a part is quickly taken."""
 
-    def __init__(self, table, mark):
+    def __init__(self, table, mark, materials):
         self.omega, self.a_eff, self.cut_bound = table[[mark, "a_eff", "cut_bound"]].to_numpy(float).T
         self.contacts, self.monomers, self.filling = (
             table[["n_contacts", "n_monomers", "filling_factor"]].to_numpy(float).T
@@ -140,6 +145,7 @@ class _Grains:
         self.type = table["type"].to_numpy()
         self.series = pd.MultiIndex.from_frame(table[["material", "type"]]).factorize()[0]
         self.size, self.cell = size_key(table["a_eff"]).to_numpy(), cell_of(table)
+        self.unit = size_law_unit(table, materials)
 
     def common(self):
         """ln(N_con phi), shape (n, 1)."""
@@ -189,13 +195,34 @@ def _by_cut_bound_of_type(grains, train):
     return np.log(grains.cut_bound) + np.array([over[kind] for kind in grains.type])
 
 
+def _by_size(grains, train):
+    """ln omega as a constant and a power of size of its type, see `size_law`."""
+    x, y = np.log(grains.a_eff / SPLIT), np.log(grains.omega / grains.unit)
+    predicted = np.full(len(y), np.nan)
+    for kind in dict.fromkeys(grains.type):
+        rows = grains.type == kind
+        own = rows & train
+        if len(np.unique(grains.size[own])) > 1:
+            level, power = _line(x[own], y[own], equal_weights(grains.cell[own]))
+            predicted[rows] = level + power * x[rows] + np.log(grains.unit[rows])
+    return predicted
+
+
+def _line(x, y, weights):
+    """Level at x = 0 and slope of straight lines by least squares; `weights` has the shape (n,) or (lines, n)."""
+    whole = weights.sum(axis=-1)
+    mean_x, mean_y = weights @ x / whole, weights @ y / whole
+    slope = (weights @ (x * y) / whole - mean_x * mean_y) / (weights @ (x * x) / whole - mean_x**2)
+    return mean_y - slope * mean_x, slope
+
+
 def _over_bound(grains, chosen):
     """Mean ln of omega over the cut bound; all cells count alike."""
     return mean_of(np.log(grains.omega[chosen] / grains.cut_bound[chosen]), grains.cell[chosen])[0]
 
 
 _PREDICT = {
-    **dict(zip(PREDICTORS, (_by_powers(_Grains.common), _by_cut_bound, _by_cut_bound_of_type), strict=True)),
+    **dict(zip(PREDICTORS, (_by_powers(_Grains.common), _by_cut_bound, _by_cut_bound_of_type, _by_size), strict=True)),
     SEPARATE: _by_powers(_Grains.separate),
 }
 
@@ -224,6 +251,64 @@ def _scatter(residual, weights, rng):
         }
         for k in range(columns)
     ]
+
+
+def size_law_unit(table, materials=None):
+    """sqrt(gamma/(rho a^3)) with a = `SPLIT` [rad s-1], the unit of omega of `size_law`, of each grain of a table."""
+    unit = {}
+    for name in table["material"].unique():
+        material = get_material(name, materials)
+        unit[name] = math.sqrt(material.surface_energy / (material.density * SPLIT**3))
+    return table["material"].map(unit).to_numpy(float)
+
+
+def size_law(table, mark="omega_disr", materials=None, seed=0):
+    """omega of each type as a power of size, for whoever has no grain at hand.
+
+    omega = C sqrt(gamma/(rho a^3)) (a_eff/a)^-p with a = `SPLIT`, by least squares of ln omega; all cells count alike.
+    As in Eq. 33 of Reissl et al. (2024) the material only sets the unit; the contacts and the filling factor, which
+    that has as well, go with size and type.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        omega [rad s-1].
+    materials : optional
+        Table of materials, handed to `ratd.materials.get_material`.
+    seed : int
+        Of the bootstrap over grains.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type of at least two sizes: C, p with `_error`; scatter, the root mean square of the residuals of
+        ln omega; n_grains.
+    """
+    table = table[table[mark].astype(float) > 0]
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    for kind, part in table.groupby("type", sort=False):
+        if size_key(part["a_eff"]).nunique() < 2:
+            continue
+        x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
+        y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
+        weights = equal_weights(cell_of(part))
+        level, slope = _line(x, y, weights)
+        levels, drawn_slopes = _line(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
+        rows.append(
+            {
+                "type": kind,
+                "C": float(np.exp(level)),
+                "C_error": float(np.std(np.exp(levels), ddof=1)),
+                "p": float(-slope),
+                "p_error": float(np.std(drawn_slopes, ddof=1)),
+                "scatter": float(np.sqrt(np.average((y - level - slope * x) ** 2, weights=weights))),
+                "n_grains": len(part),
+            }
+        )
+    return pd.DataFrame(rows)
 
 
 def slopes(table, mark="omega_disr", split=SPLIT):

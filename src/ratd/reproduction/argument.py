@@ -65,7 +65,11 @@ def bound_section(data):
         "radius a_eff phi^(-1/3).",
         markdown_table(
             ["type", "sizes", "grains", "firm bound over cut bound", "tensile strength over cut bound"]
-            + ["Table 3 over cut bound", "Table 3 over firm bound", "its load over what that cut bears"],
+            + [
+                "Table 3 over cut bound",
+                "Table 3 over firm bound",
+                "load of Table 3 on the weakest cut over what it bears",
+            ],
             rows,
         ),
         *_of_strength(data),
@@ -223,25 +227,41 @@ def lammps_section(data):
         cells = [key[0], f"{key[1]} nm", str(key[2]), row["mark"]]
         values = (theirs, ours, row["cut_bound"], printed.get(key, np.nan))
         rows.append([*cells, *map(number, values), number(theirs / ours), number(values[-1] / theirs)])
-    ways = []
-    for start, code in lammps.COMPARISONS:
-        own = lammps_over_ratd([row for row in found if (row["start"], row["code"]) == (start, code)])
-        ways.append(f"{lammps.START[start]}, {lammps.FRAME[code]}: {with_error(own['median'], own['error'])}")
     head = ["type", "size", "seed", "mark", "LAMMPS", "ratd", "cut bound", "Table 3", "LAMMPS/ratd", "Table 3/LAMMPS"]
     grains = table[table["study"] == "rotation"].drop_duplicates(["type", "a_eff", "seed"])
     counts = f"{int(grains['n_monomers'].min())} to {int(grains['n_monomers'].max())} monomers"
     return "\n\n".join(
         [
             f"{plural(len(grains), f'{material} grain')} of {counts} ({', '.join(dict.fromkeys(grains['type']))}) were "
-            "given to LAMMPS (its granular package), small ones because of its cost: set into rigid rotation at once, "
+            "given to LAMMPS (its granular package): set into rigid rotation at once, "
             "in the inertial frame and in one that turns, and driven up by an outer torque. Each threshold lies "
             "between two omega that were tried, a few per cent apart; their geometric mean is given. LAMMPS over ratd, "
-            f"medians, ± from drawing grains: {'; '.join(ways)}. Below are the grains set into rotation at once in the "
-            "inertial frame, where no force of a turning frame enters. docs/validation.md tells where the two "
-            "codes differ.",
+            f"medians, ± from drawing grains: {by_frame_and_type(found)}. Below are the grains set into rotation at "
+            "once in the inertial frame, where no force of a turning frame enters; there a contact of LAMMPS that is "
+            "parallel to the axis loses some of its load as the grain turns, in a frame that turns it does not "
+            "(docs/validation.md tells where the two codes differ).",
             markdown_table(head, sorted(rows, key=lambda row: (row[0], float(row[1].split()[0]), int(row[2])))),
         ]
     )
+
+
+def by_frame_and_type(rows):
+    """Medians of thresholds of LAMMPS over those of ratd, text: by how the grain was turned, and by type.
+
+    Parameters
+    ----------
+    rows : list of dict
+        From `lammps.thresholds`.
+    """
+    ways = []
+    for start, code in lammps.COMPARISONS:
+        here = [row for row in rows if (row["start"], row["code"]) == (start, code)]
+        types = []
+        for kind in dict.fromkeys(row["type"] for row in here):
+            own = lammps_over_ratd([row for row in here if row["type"] == kind])
+            types.append(f"{kind} {with_error(own['median'], own['error'])}")
+        ways.append(f"{', '.join(types)} ({lammps.START[start]}, {lammps.FRAME[code]})")
+    return "; ".join(ways)
 
 
 def ratios_to_ratd(rows):
@@ -268,6 +288,12 @@ def _printed_of(data, material):
     return dict(zip(keys, table3_omega(grains, data.plan.materials), strict=True))
 
 
+def _how(data):
+    """With what epsilon and step the grains of the study of the formulae were spun up, in words."""
+    own = data.plan.config["figures"]["formulae"]
+    return f", all with epsilon = {own['epsilon']:g} and f = {own['timestep_factor']:g}" if own else ""
+
+
 def formula_section(data):
     """What each printed formula changes: those of the contacts from their study, Eq. 3 from the table of grains."""
     table = data.formulae
@@ -284,8 +310,8 @@ def formula_section(data):
             rows.append([FORMULAE.get(formula, formula), kind, f"{nm:g} nm", *cells, str(n)])
         parts.append(
             f"{plural(int(own.sum()), 'grain')} of the drive `prescribed` were spun up again with one formula as "
-            "printed and all else as in the consistent model. Medians of the ratio to the same grain in the consistent "
-            "model:"
+            f"printed and all else as in the consistent model{_how(data)}. Medians of the "
+            "ratio to the same grain in the consistent model:"
         )
         head = ["formula as printed", "type", "size", "omega_disr", "omega at 25 % mass loss", "runs"]
         parts.append(markdown_table(head, rows))

@@ -8,7 +8,8 @@ CAPTIONS = {
         "alpha as printed in Table 3), against size, a panel a type. Circles and squares: omega_disr of the grains "
         "that the drives prescribed and literal spun up; open triangles: the firm bound of all grown grains, above "
         "which their contacts cannot hold them as they stand. Each is a median over all materials, which have the same "
-        "weight; bars hold the middle two thirds of the grains. The dashed line is the paper.\n\n"
+        "weight; bars hold the middle two thirds of the grains, and say little where these are few (Which grains). The "
+        "dashed line is the paper.\n\n"
         "What to see: how far circles and triangles lie below the line, most of all for large BA grains, and that the "
         "squares lie about it and rise: the one free number of their drive, which sets their level, was fixed on one "
         "cell of the paper. Circles of BA above the triangles belong to remnants, which hold more than the whole grain."
@@ -78,7 +79,8 @@ CAPTIONS = {
         "distances along the lines. A row a stage of the spin-up, a column a drive; all cells have the same weight. "
         f"The axis leaves out the smallest fragments, {100 * LEAST:g} % of all.\n\n"
         "What to see: where the thick lines rise, the size of the pieces that carry the mass away, and how far the "
-        "thin ones lie to their left: small fragments are many and hold little of the mass."
+        "thin ones lie to their left: in BAM small fragments are many and hold little of the mass, in BA pieces of a "
+        "tenth of the grain and more make up most of both. In the smallest grains one monomer is a tenth of the mass."
     ),
 }
 """Name of a figure -> what is drawn, and what to see; two paragraphs."""

@@ -176,7 +176,7 @@ def _whole(data):
             ends = f"{values.min():.3f}–{values.max():.3f} of {len(values)}" if len(values) > 1 else "one grain"
             text = f"{middle:.3f} ({ends})"
             for value in _left(shown.get(drive, []), "mass", part):
-                text += f"; grain of Fig. 5 {value:.3f}"
+                text += f"; the grain of Fig. 5, of another cell, {value:.3f}"
             return Answer(text, over(middle, printed.value) if printed.value else NOTHING, holds(middle))
 
         return drive_rows(key, {drive: (drive, runs) for drive, runs in course.items()}, evaluate, reason)

@@ -203,7 +203,10 @@ class Data:
     @cached_property
     def predictions(self):
         """Drive -> what grains are left out by -> scatter of the predictors, see `ratd.beyond.cross_validation`."""
-        return {drive: {by: cross_validation(table, by=by) for by in LEFT_OUT} for drive, table in self.tables.items()}
+        return {
+            drive: {by: cross_validation(table, by=by, materials=self.plan.materials) for by in LEFT_OUT}
+            for drive, table in self.tables.items()
+        }
 
     @cached_property
     def fragments(self):

@@ -62,8 +62,9 @@ def _deviation(data):
 def _porosity(data):
     table = data.at_rest
     reason = (
-        f"Mean of each size; the least is that of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi) gives a "
-        f"solid sphere P = {printed_porosity(0.0):.2f}."
+        "Mean of each size; the least is that of the smallest. With 15/(8 pi) in Eq. 3; the printed 5/(4 pi), which "
+        f"gives a solid sphere P = {printed_porosity(0.0):.2f}, would make all of it lower. Why it is higher than "
+        "printed in large grains, where it is, is not known."
     )
     result = []
     for kind, own in table.groupby("type", sort=False):

@@ -14,7 +14,8 @@ from ratd.beyond import (
 )
 from ratd.fragmentation import STAGES
 from ratd.markdown import markdown_table
-from ratd.reproduction.bounds import printed_slopes, whole_nm
+from ratd.reproduction.bounds import printed_slopes, sizes_of, split_sizes, whole_nm
+from ratd.reproduction.shapes import more_oblate
 from ratd.reproduction.text import NOTHING, interval, number, with_error
 from ratd.spinup import FIRST_LOSS
 from ratd.units import NM
@@ -114,8 +115,8 @@ def _pace(data):
         f"The spin-up of the drive `prescribed` has its epsilon from {FIRST_LOSS:g} of the cut bound on and is faster "
         "below (docs/model.md, The scheme). Where grains lose their first mass (d omega/dt)/omega² is, in medians, so "
         f"many times epsilon: {'; '.join(parts)}. A faster spin-up of BAM grains gives a greater omega"
-        f"{_tried(data)}. Where this number grows with size, the fall of omega_disr with size comes out too shallow, "
-        "not too steep."
+        f"{_tried(data)}. As this excess grows with size, the fall of omega_disr with size comes out too shallow, not "
+        "too steep."
     ]
 
 
@@ -132,43 +133,47 @@ def fragment_section(data):
     """Sizes of the fragments."""
     if not data.fragments:
         return "The data hold no fragments."
-    parts = []
+    parts, laws = [], []
     for drive, table in data.fragments.items():
         largest = max((int(t["n_monomers"].max()) for t in data.tables.values()), default=1)
         rows = []
         for stage, text in STAGES.items():
-            shares = fragment_shares(table, stage)
-            for kind, part in shares.groupby("type", sort=False):
-                own = part.set_index("class")
-                cells = [
-                    with_error(own.loc[name, "mass_share"], own.loc[name, "mass_share_error"])
-                    for name in MONOMER_CLASSES
-                ]
-                single = own.loc[MONOMER_CLASSES[0], "number_share"]
-                chosen = table[table[stage] & (table["type"] == kind)]
-                rows.append([text, kind, f"{own['n_fragments'].iloc[0]} from {own['n_grains'].iloc[0]}", *cells,
-                             number(single), _law(chosen["fragment_n_monomers"], largest)])  # fmt: skip
-        head = ["stage", "type", "fragments, from grains"]
+            for part in split_sizes(table) if stage == "half" else [table]:
+                rows += [[text, sizes_of(part), *cells] for cells in _shares(part, stage)]
+            for kind, own in table[table[stage]].groupby("type", sort=False):
+                law = _law(own["fragment_n_monomers"], largest)
+                laws += [f"{drive} {kind} {text}: {law}"] if law else []
+        head = ["stage", "sizes", "type", "fragments, from grains"]
         head += [f"mass in fragments of {name}" for name in MONOMER_CLASSES]
-        parts += [f"Drive `{drive}`:", markdown_table([*head, "number of single monomers", "power law"], rows)]
+        parts += [f"Drive `{drive}`:", markdown_table([*head, "number of single monomers"], rows)]
     return "\n\n".join(
         [
             "A fragment counts when it has left for good (it lies outside the sphere around the largest one and "
-            "recedes), once. Shares of the mass that left; ± from a bootstrap over grains. The last column holds the "
-            "exponent s of p(n) ~ n^-s, n being the number of monomers, only where made-up samples of that law lie as "
-            f"far from their own fit in at least {100 * JUSTIFIED:g} % of cases; otherwise the law is not justified "
-            "and no exponent is given.",
+            "recedes), once. Shares of the mass that left; ± from a bootstrap over grains.",
             *parts,
+            "A power law p(n) ~ n^-s of the number of monomers n is justified where made-up samples of that law lie as "
+            f"far from their own fit in at least {100 * JUSTIFIED:g} % of cases. It is "
+            f"{'so for ' + '; '.join(laws) if laws else 'justified for no drive, type and stage'}.",
         ]
     )
 
 
+def _shares(table, stage):
+    """Rows of a table of fragments, one a type: how many, mass of each class, number of the first class."""
+    rows = []
+    for kind, part in fragment_shares(table, stage).groupby("type", sort=False):
+        own = part.set_index("class")
+        cells = [with_error(*own.loc[name, ["mass_share", "mass_share_error"]]) for name in MONOMER_CLASSES]
+        counts = f"{own['n_fragments'].iloc[0]} from {own['n_grains'].iloc[0]}"
+        rows.append([kind, counts, *cells, number(own.loc[MONOMER_CLASSES[0], "number_share"])])
+    return rows
+
+
 def _law(sizes, largest):
+    """Exponent of a power law, text; None where there are too few fragments for one, or it is not justified."""
     found = power_law(sizes, largest)
-    if not np.isfinite(found["exponent"]) or found["n"] < FEWEST:
-        return "too few fragments"
-    if found["probability"] < JUSTIFIED:
-        return f"not justified (p = {found['probability']:.2g})"
+    if not np.isfinite(found["exponent"]) or found["n"] < FEWEST or found["probability"] < JUSTIFIED:
+        return None
     return f"s = {with_error(found['exponent'], found['error'])} (p = {found['probability']:.2g})"
 
 
@@ -176,19 +181,22 @@ def shape_section(data):
     """Oblate and prolate grains."""
     rows = []
     for drive, table in data.tables.items():
-        for _, row in oblate_counts(table, by=("material", "type")).iterrows():
-            cells = [drive, row["material"], row["type"]]
+        for _, row in oblate_counts(table, by=("type",)).iterrows():
+            cells = [drive, row["type"]]
             for when in ("start", "disr"):
                 k, n = row[f"{when}_oblate"], row[f"{when}_known"]
                 share = interval(k / n, row[f"{when}_low"], row[f"{when}_high"]) if n else NOTHING
                 cells += [f"{k} of {n}", share]
             rows.append(cells)
-    head = ["drive", "material", "type", "oblate at rest", "share", "oblate at omega_disr", "share"]
+    answers = {drive: more_oblate(table, None) for drive, table in data.tables.items()}
+    found = [f"{own.text} for `{drive}`" for drive, own in answers.items() if own is not None]
+    head = ["drive", "type", "oblate at rest", "share", "oblate at omega_disr", "share"]
     return "\n\n".join(
         [
             "Oblate means b/a > c/b, for the ellipsoid with the moments of inertia of the relaxed grain and of the "
-            "largest fragment at omega_disr. Shares with Wilson's 95 % interval; all sizes together, each grain "
-            "counting once, so that small sizes, of which there are more grains, weigh most.",
+            "largest fragment at omega_disr. Shares with Wilson's 95 % interval; all materials and sizes together, "
+            "each grain counting once. With cells of one weight the share of oblate BAM grains at omega_disr less that "
+            f"at rest is {', '.join(found)}.",
             markdown_table(head, rows),
         ]
     )

@@ -31,8 +31,8 @@ def rows(data):
             "peak_mass",
             data.tables,
             lambda table, p: _of_types(table, lambda own: 1 - own["mass_fraction_disr"], *QUARTER),
-            "That the omega of a quarter lost is close to omega_disr, as another row says, does not make the masses "
-            "alike: where a grain parts at once, the stress peaks just before.",
+            "Where a grain parts at once the stress peaks just before any mass is lost; where pieces have left before, "
+            "it peaks in what is left.",
         ),
         drive_rows(
             "abrupt",

@@ -1,5 +1,7 @@
 """The text of docs/reproduction.md."""
 
+import re
+
 from ratd.calibration import PRINTED_STEP
 from ratd.composition import tell
 from ratd.ensemble import cell_of, size_key
@@ -10,6 +12,7 @@ from ratd.reproduction.bounds import sizes_of, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import COMMON_FIGURES, DRIVEN_FIGURES
 from ratd.reproduction.paper import ABOUT
+from ratd.reproduction.recommended import recommended_section
 from ratd.reproduction.summary import answer, summary
 from ratd.reproduction.table3 import table3_section
 from ratd.reproduction.text import number, row_table, with_error
@@ -28,19 +31,19 @@ Numbers and figures were written by
 
 from the files in `docs/reproduction/data` and, for the checks of the model, in `docs/validation/data`, where READMEs
 say how these were made; no number but the printed ones and the rules of “holds if” was typed by hand. "±" is a standard
-error; that of a median over several cells is that of grains drawn regardless of their cell, and so is rather too large.
-Where cells hold different numbers of grains, medians and percentiles are weighted (Harrell's rule, which is that of
-numpy for equal weights). A range in brackets behind a value is that from the 16th to the 84th percentile of the
-grains, called the middle two thirds; from the least to the greatest where it says "of" how many, or names single
-grains; and a {confidence:g} % interval where the text says so. Angular velocities are in rad/s.
+error, that of a median rather too large. A range in brackets behind a value holds the middle two thirds of the grains
+(16th to 84th percentile); “(x–y of n)” is from the least to the greatest of n; other ranges say what they are. Angular
+velocities are in rad/s.
 
 **Two models.** Every spin-up was made in up to two ways, called drives:
 
 - `prescribed`, the consistent model: an outer torque, which the radiation supplies, makes the grain turn with omega(t).
-- `literal`, the equations as printed (Eqs. 29 and 30): inertial forces of a turning frame, no outer torque. A grain
-  that obeys them exactly does not turn in the inertial frame but for the terms that Eq. 30 leaves out, see
-  `docs/model.md`. Unless “exact” is said, the Coriolis force is taken at the velocity half a step before (“explicit”):
-  this lag, which grows with the step, turns a grain backwards and is what tears it. How the paper takes it is not said.
+- `literal`, the terms of the frame as printed (Eqs. 29 and 30): inertial forces of a turning frame, no outer torque. A
+  grain that obeys them exactly does not turn in the inertial frame but for the terms that Eq. 30 leaves out, see
+  `docs/model.md`. The forces of the contacts are those of the consistent model, with the damping that Eq. 29 lacks;
+  what their misprints change is told under Each printed formula alone. Unless “exact” is said, the Coriolis force is
+  taken at the velocity half a step before (“explicit”): this lag, which grows with the step, turns a grain backwards
+  and is what tears it. How the paper takes it is not said.
 
 What the printed equations do is shown here. What the authors' code did is not known: it may differ from the print.
 
@@ -53,24 +56,27 @@ What the printed equations do is shown here. What the authors' code did is not k
   means b/a > c/b. phi: filling factor. P = 1 - phi: porosity.
 - omega_disr, the paper's mark: the omega at which the total stress of the largest fragment peaks. The total stress (Eq.
   32) is the sum over all contacts of |F_N|/(pi r²), r being the radius of the contact, which is no stress of the
-  material. What the paper leaves open: here it is a running median over {window} records, only records before the
-  largest fragment holds less than half of the mass of the grain count, and of equal peaks the last. Other marks are the
-  first loss of mass, and the loss of a quarter of it.
+  material. What the paper leaves open: here it is a running median over {window} records (one each {record} of the
+  cut bound), which count only while the largest fragment holds at least half of the mass of the grain, and of equal
+  peaks the last. Other marks are the first loss of mass, and the loss of a quarter of it.
 - Eq. 33, the paper's fit: omega_disr = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, A and alpha in Table 3;
   N_con is the number of contacts and <a_mon> the mean radius of the monomers. With the printed Table 3 it is taken at
   the printed <a_mon> = 20 nm; with that of our grains, which is greater, it would be lower (Table 3).
 - F_C: the greatest pull of a contact. Cut bound: the omega above which the weakest cut through the contacts of a grain,
   each holding F_C, gives way; firm bound: the same with all that contacts bear, sideways and pushed as well (What the
   contacts can hold).
-- dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}. The drive `prescribed`
-  has f = {prescribed_step:g}.
+- dt, f: the time step, f times the shortest time of the contacts (Eq. 31); printed f = {step:g}. The ensemble of the
+  drive `prescribed` has f = {prescribed_step:g}; other studies name theirs.
 - epsilon = (d omega/dt)/omega², how fast the drive `prescribed` raises omega; {epsilon} from {first:g} of the cut bound
-  on, faster below.
+  on, faster below, where many BAM grains part (Does omega_disr flatten with size? tells how fast, and what it does).
 - d omega/dt: how fast the drive `literal` raises omega. What the figures of the paper were made with is not known (One
   free number of the literal drive). The runs of the ensemble have {rate}; other runs name theirs.
 - xi_c: how far a contact rolls before it gives way; T_vis: viscous time of the damping. The cell of Fig. 4: {cell}.
 - A solid grain: one that turns as a rigid body, until it parts where the consistent model says."""
 
+SEEN = {True: "yes", False: "no", None: "not decided"}
+WIDE_FIGURES = (6, 7, 9)
+"""Numbers of figures that are as wide as a page: those of the two drives stand below each other."""
 CAPTION_DRIVE = "``{{ snakemake.wildcards.drive }}``"
 
 
@@ -96,6 +102,7 @@ def report(data, pictures, captions=None):
         *answer(data),
         *_further(data, "overview", pictures),
         summary(data, rows),
+        *_recommended(data),
         "## Which grains",
         _coverage(data),
         "## The printed numbers",
@@ -109,7 +116,7 @@ def report(data, pictures, captions=None):
         "fractal dimension at disruption, what a grain does where the spin-up stops, and Fig. 9 for q-S and co-S.",
         *_printed_numbers(data, rows),
         "## Figures and tables",
-        *_figures(data, pictures, captions or {}),
+        *_figures(data, pictures, captions or {}, rows),
         "## Why the consistent model lies below the print",
         argument.INTRODUCTION,
         *_argument(data, pictures),
@@ -119,17 +126,23 @@ def report(data, pictures, captions=None):
     return "\n\n".join(parts) + "\n"
 
 
+def _recommended(data):
+    """What to use for omega_disr, under its heading."""
+    parts = recommended_section(data)
+    return ["## What to use for omega_disr", *parts] if parts else []
+
+
 def _introduction(data):
     config, printed = data.plan.config, rate.printed_rate(data)
     law = data.plan.spin_up_of("literal")
     own = f"{data.plan.pace('literal')} and f = {law['timestep_factor']:g}"
     return INTRODUCTION.format(
-        confidence=100 * config["ensemble"]["confidence"],
         step=PRINTED_STEP,
         prescribed_step=data.plan.spin_up_of("prescribed")["timestep_factor"],
         window=MEDIAN_WINDOW,
         epsilon=data.plan.pace("prescribed").removeprefix("epsilon = "),
         first=FIRST_LOSS,
+        record=f"1/{2 * data.plan.spin_up_of('prescribed')['records']:g}",
         cell=_cell_of_figure4(config),
         rate=own if printed is None else f"{own}, which stands for {number(printed)} rad/s² at the printed step",
     )
@@ -183,10 +196,17 @@ def _coverage(data):
         f"grains can hold{at_rest} is said of all that were grown. The table counts the spin-ups. Where something is "
         "said of several cells (a material, type and size each), all of them have the same weight, as in the paper, "
         "where each has 30 grains: means, medians and fits do not depend on how many grains of each could be computed, "
-        "but their errors do. Cells that are missing here are missing in all of that."
+        f"but their errors do.{_missing(data)}"
     )
     counts = markdown_table(["drive", "type", *(f"{s / 1e3:g} nm" for s in sizes), "all"], rows)
     return "\n\n".join([text, counts, _marks(data)])
+
+
+def _missing(data):
+    """A sentence where a drive lacks cells that were grown."""
+    cells = data.grown.assign(size=size_key(data.grown["a_eff"])).groupby(["material", "type", "size"]).ngroups
+    short = [drive for drive, table in data.tables.items() if len(set(cell_of(table))) < cells]
+    return f" Cells that are missing ({', '.join(short)}) are missing in all of that." if short else ""
 
 
 def _marks(data):
@@ -208,7 +228,7 @@ def _marks(data):
     )
 
 
-def _figures(data, pictures, captions):
+def _figures(data, pictures, captions, rows):
     """One section a figure or table, in the order of the paper."""
     one, two = tell()
     parts = ["### Table 1: abundances in co-S", one, "### Table 2: materials", two]
@@ -222,9 +242,10 @@ def _figures(data, pictures, captions):
         if not names:
             parts.append("The data of this figure are not there.")
             continue
-        parts.append(_side_by_side(names, pictures))
+        parts += _stacked(names, pictures) if number_ in WIDE_FIGURES else [_side_by_side(names, pictures)]
         if number_ in captions:
             parts.append(_caption(captions[number_]))
+        parts += _seen(number_, rows, data.drives)
         if number_ == 1:
             head, lines, outside = grown.figure1_table(data)
             parts.append(markdown_table(head, lines))
@@ -242,6 +263,26 @@ def _side_by_side(names, pictures):
     """Pictures next to each other, those of the two drives in one row."""
     cells = [f"![{name}]({pictures}/{name}.png)" for name in names]
     return markdown_table([name.partition("_")[2] or "all drives" for name in names], [cells])
+
+
+def _stacked(names, pictures):
+    """Pictures below each other, as wide as the page."""
+    return [f"![{name}]({pictures}/{name}.png)" for name in names]
+
+
+def _seen(number_, rows, drives):
+    """A paragraph: what the paper says of a figure, and whether it is seen here, from the rows of printed numbers."""
+    told = []
+    for row in rows:
+        if not row.printed.rule or not re.search(rf"Fig\. {number_}\b", row.printed.place) or not row.answers:
+            continue
+        names = [drive for drive in drives if drive in row.answers]
+        verdicts = " / ".join(SEEN[row.answers[name].holds] for name in names or [""])
+        told.append(f"{row.printed.what} ({row.printed.text}): {verdicts}")
+    if not told:
+        return []
+    of = f" ({' / '.join(drives)})" if number_ in DRIVEN_FIGURES else ""
+    return [f"Seen here of what the paper says with it{of}, by the rules of The printed numbers: {'; '.join(told)}."]
 
 
 def _caption(text):

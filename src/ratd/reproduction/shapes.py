@@ -30,6 +30,9 @@ REMNANTS = (
 )
 
 
+LONGER = " Where both grow alike, a grain becomes longer, but no more oblate."
+
+
 def rows(data):
     """Rows of the shapes, list of Row."""
     # the shape of a grain hardly changes when it comes to rest
@@ -44,9 +47,9 @@ def rows(data):
             for size in (350, 500)
         ),
         drive_rows("c_over_b", grown, _slender),
-        drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), deformed),
+        drive_rows("oblate_disr", tables, _oblate("disr", 0.5, 1.0, types=BAM), deformed + LONGER),
         drive_rows("oblate_disr_BA", tables, _oblate("disr", 0.0, 0.5, 200, ("BA",))),
-        drive_rows("more_oblate", tables, _more_oblate, deformed),
+        drive_rows("more_oblate", tables, more_oblate, deformed + LONGER),
         drive_rows("b_over_a", tables, _flattest, deformed),
         drive_rows("b_over_a_BA", tables, _less_flat, "Arms of BA grains swing out and stretch before they part."),
         drive_rows("porosity_change_BA", tables, _loosened(("BA",), -np.inf, 0.0), REMNANTS),
@@ -80,10 +83,7 @@ def _deformation(tables):
         parts += [f"{drive} {', '.join(types)}"] if types else []
     if not parts:
         return ""
-    return (
-        f"From rest to omega_disr b/a and c/b grow, in the median, by factors of {'; '.join(parts)}. Where both grow "
-        "alike, a grain becomes longer, but no more oblate."
-    )
+    return f"From rest to omega_disr b/a and c/b grow, in the median, by factors of {'; '.join(parts)}."
 
 
 def _growth(table, long, short):
@@ -118,8 +118,21 @@ def _oblate(when, low, high, size=None, types=None):
     return evaluate
 
 
-def _more_oblate(table, printed):
-    """Mean change of being oblate from rest to omega_disr, of the grains whose shape is known at both."""
+def more_oblate(table, printed):
+    """Mean change of being oblate from rest to omega_disr, of the grains whose shape is known at both.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    printed : ratd.reproduction.paper.Printed or None
+        What the paper says; not needed.
+
+    Returns
+    -------
+    Answer or None
+        None without BAM grains of known shapes.
+    """
     shapes = {when: [table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc"] for when in ("start", "disr")}
     known = np.all([np.isfinite(axes).all(axis=0) & (axes[0] > 0) for axes in shapes.values()], axis=0)
     became = is_oblate(*shapes["disr"]).astype(int) - is_oblate(*shapes["start"])

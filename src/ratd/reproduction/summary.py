@@ -1,19 +1,27 @@
 """The head of the document: what holds and what does not."""
 
 import numpy as np
-import pandas as pd
 
 from ratd import formula_table
-from ratd.beyond import SPLIT, slopes
+from ratd.beyond import PREDICTORS, SPLIT, slopes
 from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown, pair_test
-from ratd.reproduction.argument import lammps_over_ratd, over_strength, printed_above, ratios_to_ratd
-from ratd.reproduction.bounds import PM, printed_slopes, ratios, shown_sizes, sizes_of, split_sizes
+from ratd.reproduction.argument import by_frame_and_type, over_strength, printed_above
+from ratd.reproduction.bounds import (
+    PM,
+    printed_slopes,
+    ratios,
+    same_grains,
+    shown_sizes,
+    sizes_of,
+    split_sizes,
+    table3_omega,
+)
 from ratd.reproduction.open_questions import least_of
 from ratd.reproduction.paper import ABOUT
-from ratd.reproduction.rate import calibrated_grains, is_calibrated, printed_rate
+from ratd.reproduction.rate import is_calibrated, printed_rate
 from ratd.reproduction.text import NOTHING, all_of, between, lies_in, number, with_error
 from ratd.statistics import median_of
 from ratd.units import NM
@@ -21,6 +29,20 @@ from ratd.validation.show import lammps, literal
 from ratd.validation.show.convergence import large_shifts, percent
 
 OF_DRIVE, PRINTED_FIT = "omega_disr, drive `{}`", "Eq. 33 with the printed Table 3"
+MAIN = {
+    "easier": "BA break most easily",
+    "order": "the order of magnitude of omega_disr (fixed on Fig. 4 for `literal`)",
+    "flattening": "an asymptotic limit for large grains",
+    "abrupt": "mass that is lost continuously",
+    "blocks": "fragments of single monomers",
+    "gain": "BAM2 that gain contacts",
+    "more_oblate": "BAM that become oblate",
+    "quarter": "a quarter of the mass lost at about omega_disr",
+    "viscous_rise": "more omega_disr with a longer viscous time",
+}
+"""Main findings of the paper on the spin-up, by key of `ratd.reproduction.paper.PRINTED`, in a few words."""
+PREDICTED = {name: name for name in PREDICTORS} | {"Eq. 33": "Eq. 33 fitted anew"}
+"""What the predictors are called, so that none is taken for Eq. 33 as printed."""
 FAR_BELOW = 0.9
 """omega of the first loss over omega_disr below which most of a type lose mass well before."""
 FEW = 3
@@ -43,6 +65,7 @@ def summary(data, rows):
     str
     """
     differ = [
+        *_grains(data),
         _bound(ratios(data.grown, data.plan.materials)),
         *_lammps(data),
         *pair_test.in_short(data),
@@ -53,7 +76,7 @@ def summary(data, rows):
         _listed("omega_disr beside the printed one", [*_levels(data), *_spin_up_rate(data), *_table3(data)]),
         _flattening(data),
         _listed("Why they differ", differ),
-        _listed("What the paper says, counted", [*_verdicts(rows, list(data.tables)), _composition(), *_grains(data)]),
+        _listed("What the paper says, counted", [*_verdicts(rows, list(data.tables)), _composition()]),
         _listed(
             "What predicts omega_disr", [_prediction(drive, data.predictions[drive]["size"]) for drive in data.tables]
         ),
@@ -68,20 +91,12 @@ def _listed(head, lines):
 
 
 def _levels(data):
-    """omega_disr over the printed one, a line a drive, and one for the calibrated rate where that is known."""
+    """omega_disr over the printed one, a line a drive."""
     tables = {drive: ratios(table, data.plan.materials) for drive, table in data.tables.items()}
-    lines = [
+    return [
         _level(f"Drive `{drive}`{_rate(data, drive)}", table) + _fixed(data, drive) + _before(table)
         for drive, table in tables.items()
     ]
-    calibrated = calibrated_grains(data)
-    if calibrated is not None and calibrated["found_over_printed"].notna().any():
-        name = (
-            f"Drive `literal` at exactly the calibrated {number(data.calibration['calibrated'].item())} rad/s², not "
-            "run, but predicted for a solid grain from the grains of `prescribed` (What the literal drive does)"
-        )
-        lines.append(_level(name, calibrated))
-    return lines
 
 
 def answer(data):
@@ -104,25 +119,59 @@ def answer(data):
         if count > NEARLY_ALL * known
         else ""
     )
-    level = {
-        drive: number(_over_printed(ratios(table, data.plan.materials))["median"])
-        for drive, table in data.tables.items()
-    }
-    study = data.study("literal")
     exact = ""
+    study = data.study("literal")
     if study is not None:
         medians, single = literal.exact_over_consistent(study)
-        exact = f", {between(*medians)} times in medians of small ones ({between(*single)} in single runs)"
+        over = exact_over_printed(data, study)
+        printed = f", {between(over.min(), over.max())} times the printed omega_disr" if len(over) else ""
+        exact = (
+            f" With it exact, grains of {sizes_of(study)} lose their first mass at {between(*medians)} times the omega "
+            f"of the consistent model{printed}, in medians of types and sizes; in one of them at "
+            f"{number(single[0])} times the former."
+        )
+    consistent, printed = (ratios(data.tables[drive], data.plan.materials) for drive in ("prescribed", "literal"))
+    small, *_, large = shown_sizes(consistent)
+    ends = [_ends_of_types(consistent, size) for size in (small, large)]
+    level = number(_over_printed(printed)["median"])
     return [
-        "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart well below the printed "
-        f"omega_disr, at {level['prescribed']} times it in the median, and the farther below it the larger it is"
-        f"{held}. Another code lets small grains part where this one does. The equations as printed (`literal`) have "
-        "no torque that could turn the grain. With the Coriolis force half a step late, as assumed here, its "
-        "omega_disr depends on d omega/dt and on the time step; with it exact, grains part only far above the omega "
-        f"of the consistent model{exact}. With it late and d omega/dt fixed on Fig. 4, omega_disr lies at "
-        f"{level['literal']} times the printed one in the median, the level of the cell of Fig. 4 by construction, and "
-        "falls less with size than Table 3."
+        "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart below the printed omega_disr, "
+        f"and the farther below it the larger it is: medians of the types are {between(*ends[0])} times it at "
+        f"{small * PM / NM:g} nm and {between(*ends[1])} times at {large * PM / NM:g} nm, where the load, going as "
+        f"omega², is {between(ends[1][1] ** -2, ends[1][0] ** -2)} times lower{held}. Another code lets small grains "
+        "part where this one does. The equations as printed (`literal`) have no torque that could turn the grain. With "
+        "the Coriolis force half a step late, as assumed here, its omega_disr depends on d omega/dt and on the time "
+        f"step.{exact} With it late and d omega/dt fixed on Fig. 4, omega_disr lies at {level} times the printed one "
+        "in the median, the level of the cell of Fig. 4 by construction, and falls less with size than Table 3."
     ]
+
+
+def _ends_of_types(table, size):
+    """Least and greatest median of the types at a size of omega_disr over the printed one."""
+    here = table[size_key(table["a_eff"]) == size]
+    medians = [_over_printed(part)["median"] for _, part in here.groupby("type")]
+    return min(medians), max(medians)
+
+
+def exact_over_printed(data, study):
+    """omega of the first loss with the exact Coriolis term over Eq. 33 with the printed Table 3 for the same grain.
+
+    Parameters
+    ----------
+    data : ratd.reproduction.data.Data
+    study : pandas.DataFrame
+        The check of the literal drive.
+
+    Returns
+    -------
+    pandas.Series
+        Median of each type and size, over the runs that lost mass of grains that the ensemble has; may be empty.
+    """
+    exact = (study["drive"] == "literal") & (study["coriolis"] == "exact")
+    runs = study[exact & study["omega_first_loss"].notna()]
+    grown = data.grown.assign(printed=table3_omega(data.grown, data.plan.materials))
+    both = same_grains(runs, grown, ("", "_grown"))
+    return (both["omega_first_loss"] / both["printed"]).groupby([both["type"], both["nm"]]).median()
 
 
 def _verdicts(rows, drives):
@@ -137,20 +186,28 @@ def _verdicts(rows, drives):
             words = f"{found.count(True)} seen here, {found.count(False)} not, {found.count(None)} left open"
             counts.append(f"drive `{key}` {words}" if key else words)
         lines.append(f"**{len(part)} printed values and findings on {what}**, with a rule each: {'; '.join(counts)}.")
-    own = [row for row in rows if row.printed.about == "spin-up" and row.answers]
+    return [*lines, *_main_findings(rows, drives)]
 
-    def named(chosen):
-        return "; ".join(f"{row.printed.what} ({row.printed.text})" for row in chosen) or "none"
 
-    seen = {drive: [row for row in own if drive in row.answers and row.answers[drive].holds] for drive in drives}
-    both = [row for row in own if all(row in rows for rows in seen.values())]
-    if len(drives) > 1:
-        none = [row for row in own if all(answer.holds is False for answer in row.answers.values())]
-        lines += [f"**Seen in neither drive**: {named(none)}.", f"**Seen in both drives**: {named(both)}."]
-    for drive, rows in seen.items():
-        alone = [row for row in rows if row not in both] if len(drives) > 1 else rows
-        lines.append(f"**Seen with the drive `{drive}`{' alone' if len(drives) > 1 else ''}**: {named(alone)}.")
-    return lines
+def _main_findings(rows, drives):
+    """A line: in which drives the main findings of the paper are seen."""
+    found = {row.key: row.answers for row in rows}
+    groups = {}
+    for key, words in MAIN.items():
+        answers = found.get(key, {})
+        if not all(drive in answers for drive in drives):
+            continue
+        verdicts = [answers[drive].holds for drive in drives]
+        seen = [f"`{drive}`" for drive, verdict in zip(drives, verdicts, strict=True) if verdict]
+        if seen:
+            outcome = "seen with " + " and ".join(seen)
+        else:
+            outcome = "seen in none" if all(verdict is False for verdict in verdicts) else "not decided, or not seen"
+        groups.setdefault(outcome, []).append(words)
+    if not groups:
+        return []
+    told = "; ".join(f"{outcome}: {', '.join(words)}" for outcome, words in groups.items())
+    return [f"**Its main findings** on the spin-up: {told}. The other rows stand under The spin-up."]
 
 
 def _rate(data, drive):
@@ -164,7 +221,7 @@ def _fixed(data, drive):
         return ""
     return (
         " This d omega/dt was fixed, within an error, on the onset of mass loss in Fig. 4, which sets the level; how "
-        "it changes with size, material and type was not."
+        "omega_disr changes with size, material and type was not."
     )
 
 
@@ -202,14 +259,18 @@ def _before(table):
         kind: median_of(ratio[own.index], cell=cell_of(own))["median"]
         for kind, own in large.groupby("type", sort=False)
     }
-    far = [f"{kind} at {number(median)}" for kind, median in medians.items() if median < FAR_BELOW]
     counts = ", ".join(f"{len(own)} {kind}" for kind, own in largest.groupby("type", sort=False))
     words = f" The values of {sizes_of(largest)} are medians of {counts} grains."
-    if far:
-        words += (
-            f" The first mass leaves grains of {sizes_of(large)} far below omega_disr, {', '.join(far)} times it: "
-            "there omega_disr is that of a remnant."
-        )
+    for kind, median in medians.items():
+        if median < FAR_BELOW:
+            own = large[large["type"] == kind]
+            quarter = own["omega_mass_75"] / own["omega_disr"] * own["found_over_printed"]
+            levels = [median_of(values, cell=cell_of(own))["median"] for values in (quarter, own["found_over_printed"])]
+            words += (
+                f" In {kind} grains of {sizes_of(large)} the first mass leaves at {number(median)} times omega_disr, "
+                f"which there is that of a remnant: a quarter of the mass is lost at {number(levels[0])} times Eq. 33, "
+                f"where omega_disr lies at {number(levels[1])} times."
+            )
     return words
 
 
@@ -228,16 +289,15 @@ def _lammps(data):
     table = data.study("lammps")
     if table is None:
         return []
-    thresholds = lammps.thresholds(table)
-    found, ratio = lammps_over_ratd(thresholds), pd.Series(ratios_to_ratd(thresholds), dtype=float)
     grains = table[table["study"] == "rotation"].drop_duplicates(["type", "a_eff", "seed"])
+    without = [kind for kind in dict.fromkeys(data.grown["type"]) if kind not in set(grains["type"])]
+    rest = f"; {' and '.join(without)} was not tried" if without else ""
     return [
-        "**LAMMPS**, an independent code, agrees in the median to about a step of the omega that were tried: it lets "
-        f"the same grains come apart at {with_error(found['median'], found['error'])} times the omega of this one "
-        f"(median of {plural(found['n'], 'threshold')} of {plural(len(grains), 'grain')} of up to "
-        f"{int(grains['n_monomers'].max())} monomers; single ones {between(ratio.min(), ratio.max())}, "
-        f"{int((np.abs(ratio - 1) > lammps.GOAL).sum())} of them farther off than {100 * lammps.GOAL:g} %). Larger "
-        "grains, for which print and model differ most, were not tried: LAMMPS is too slow for them."
+        "**LAMMPS**, an independent code, lets the same grains come apart at nearly the same omega. Medians of LAMMPS "
+        f"over this code: {by_frame_and_type(lammps.thresholds(table))}. In the inertial frame contacts of LAMMPS lose "
+        "some of their load as the grain turns, in one that turns with the grain they do not (docs/validation.md). "
+        f"{plural(len(grains), 'grain')} of up to {int(grains['n_monomers'].max())} monomers{rest}, nor were larger "
+        "grains, for which print and model differ most."
     ]
 
 
@@ -247,10 +307,12 @@ def _strength(data):
         return []
     found = [values for *_, values in over_strength(data)]
     model, printed = ([values[k] for values in found] for k in (0, 1))
+    nearer = max(map(abs, np.log(model))) < min(map(abs, np.log(printed)))
     return [
-        "**Tensile strength** (Tatsuuma et al. 2019): its omega is "
-        f"{between(min(model), max(model))} times the omega_disr of the drive `prescribed` and "
-        f"{between(min(printed), max(printed))} times Eq. 33 with Table 3, in medians of types and sizes."
+        "**The tensile strength** of pulled aggregates (Tatsuuma et al. 2019), which knows nothing of this code, gives "
+        f"an omega of {between(min(model), max(model))} times the omega_disr of the drive `prescribed`, and "
+        f"{between(min(printed), max(printed))} times Eq. 33 with Table 3, in medians of types and sizes"
+        f"{': it is nearer to the consistent model' if nearer else ''}."
     ]
 
 
@@ -259,12 +321,30 @@ def _formulae(data):
     table = data.formulae
     if table is None:
         return []
-    found = formula_table.formula_effects(table, "omega_disr").query("type == 'all'").to_dict("records")
-    ends = [pick(found, key=lambda each: each["median"]) for pick in (min, max)]
-    told = " to ".join(f"{with_error(each['median'], each['error'])} ({plural(each['n'], 'grain')})" for each in ends)
+    rest, undamped = [], []
+    for mark in ("omega_disr", "omega_mass_75"):
+        found = formula_table.formula_effects(table, mark).query("type == 'all'")
+        without = found["formula"] == formula_table.DAMPING
+        rest += found.loc[~without, "median"].tolist() if mark == "omega_disr" else []
+        undamped.append(
+            ", ".join(
+                f"{with_error(each['median'], each['error'])} ({each['nm']:g} nm)"
+                for each in found[without].to_dict("records")
+            )
+        )
+    told = ""
+    if rest:
+        told = f"those of the contacts move the median omega_disr of a size to {between(min(rest), max(rest))} times"
+    if undamped[0]:
+        told += (
+            f"{'; ' if told else ''}no damping, as in Eq. 29, moves it to {undamped[0]} times, and the omega of the "
+            f"loss of a quarter of the mass to {undamped[1]} times"
+        )
+    grains = table.drop_duplicates(["type", "a_eff", "seed"])
     return [
-        "**Each printed formula alone** moves the median omega_disr of a size, all types together, to "
-        f"{told} times that of the consistent model, in grains of {sizes_of(table)}; larger ones were not tried."
+        f"**Each printed formula alone**: {told} that of the consistent model (all types together; "
+        f"{plural(len(grains), 'grain')} of {', '.join(grains['material'].unique())} of {sizes_of(table)}; "
+        "larger ones were not tried)."
     ]
 
 
@@ -286,7 +366,9 @@ def _prediction(drive, found):
     own = found[(found["type"] == "all") & found["scatter"].notna()]
     if not len(own):
         return ""
-    misses = [f"{with_error(row['scatter'], row['error'])} ({row['predictor']})" for _, row in own.iterrows()]
+    misses = [
+        f"{with_error(row['scatter'], row['error'])} ({PREDICTED[row['predictor']]})" for _, row in own.iterrows()
+    ]
     best = least_of(own)
     verdict = f"the least is that of {best}" if best else "which is the least is not decided"
     return (
@@ -298,7 +380,7 @@ def _prediction(drive, found):
 def _flattening(data):
     """Slopes above `SPLIT` of what there is, a table."""
     materials = data.plan.materials
-    sources = {OF_DRIVE.format(drive): slopes(table) for drive, table in data.tables.items()}
+    sources = {OF_DRIVE.format(drive): slopes(without_thin_cells(table)) for drive, table in data.tables.items()}
     sources["the cut bound"] = slopes(data.grown, "cut_bound")
     sources[PRINTED_FIT] = printed_slopes(data.grown, materials)
     types = list(dict.fromkeys(data.grown["type"]))
@@ -308,34 +390,39 @@ def _flattening(data):
         rows.append([name, *(own.get(kind, NOTHING) for kind in types)])
     parts = [
         f"**Flattening**: the paper speaks of an asymptotic limit of omega_disr above {SPLIT / NM:g} nm. The power of "
-        "size there is",
+        f"size there is{f', in cells of {FEW} grains and more,' if _thin(data) else ''}",
         markdown_table(["", *types], rows),
-        _between_limit_and_fit(data, sources) + _without_thin_cells(data),
+        _between_limit_and_fit(data, sources) + _with_thin_cells(data),
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _without_thin_cells(data):
-    """Sentences: the powers of size without cells of fewer than `FEW` grains, for each drive that has some."""
+def without_thin_cells(table):
+    """Grains of a table but those of large cells (from `ratd.beyond.SPLIT` on) of fewer than `FEW` grains."""
+    cell = cell_of(table)
+    thin = np.bincount(cell)[cell] < FEW
+    return table[~(thin & table.index.isin(split_sizes(table)[-1].index))]
+
+
+def _thin(data):
+    """Drive -> number of large cells that `without_thin_cells` leaves out, where there are any."""
+    count = {drive: table.drop(without_thin_cells(table).index) for drive, table in data.tables.items()}
+    return {drive: len(np.unique(cell_of(part))) for drive, part in count.items() if len(part)}
+
+
+def _with_thin_cells(data):
+    """Sentences: the powers of size with all cells, for each drive that has some of few grains."""
     words = []
-    for drive, table in data.tables.items():
-        large = split_sizes(table)[-1]
-        cell = cell_of(large)
-        count = np.bincount(cell)
-        thin, kept = np.count_nonzero(count < FEW), large[count[cell] >= FEW]
-        if not thin:
-            continue
-        powers = slopes(kept)
+    for drive, thin in _thin(data).items():
+        powers = slopes(data.tables[drive])
         told = [
-            f"{row['type']} {with_error(row['above'], row['above_error'])} "
-            f"({sizes_of(kept[kept['type'] == row['type']])})"
+            f"{row['type']} {with_error(row['above'], row['above_error'])}"
             for _, row in powers[powers["above"].notna()].iterrows()
         ]
-        if told:
-            words.append(
-                f" {thin} of the large cells of the drive `{drive}` have fewer than {FEW} grains, and count as much as "
-                f"the others; without them the power is {', '.join(told)}."
-            )
+        words.append(
+            f" {thin} of the large cells of the drive `{drive}` have fewer than {FEW} grains each; with them, "
+            f"each counting as much as the others, the power is {', '.join(told)}."
+        )
     return "".join(words)
 
 
@@ -394,13 +481,15 @@ def _composition():
 
 
 def _grains(data):
-    """Contacts a monomer of the grains of Fig. 1, which scatter in size does not touch, and what is unlike ours."""
+    """That the grains are like those of the paper: contacts a monomer of those of Fig. 1, and what is unlike ours."""
     over = grown.contacts_over_printed(data)
     if not over:
         return []
     *_, outside = grown.figure1_table(data)
-    rest = f"; printed, but outside of 95 % of ours: {', '.join(outside)}; why is not known" if outside else ""
+    rest = f", but for {', '.join(outside)} of the printed ones; why is not known" if outside else ""
     return [
-        f"**The grains of Fig. 1** have {between(min(over), max(over))} times the printed contacts a monomer "
-        f"({plural(len(over), 'grain')}), which follows from their types{rest}."
+        "**Not the grains**: their numbers of monomers follow Fig. 1, from which the radii of the monomers were taken, "
+        "as the printed mean radius gives far more monomers than the figure has (The grains of the text). Those of "
+        f"Fig. 1 have {between(min(over), max(over))} times the printed contacts a monomer "
+        f"({plural(len(over), 'grain')}), and numbers and outer radii as printed within 95 % of ours{rest}."
     ]

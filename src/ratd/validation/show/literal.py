@@ -10,6 +10,11 @@ from ratd.statistics import median_of
 from ratd.validation.literal import EXACT_END, MARKS
 
 MARK = "omega_mass_75"
+MARK_WORDS = {
+    "omega_disr": "omega_disr",
+    "omega_first_loss": "first loss of mass",
+    "omega_mass_75": "loss of a quarter of the mass",
+}
 LAW = 1 / 3
 """Exponent of omega in (d omega/dt)/dt that is looked for."""
 SCALE = r"$(\mathrm{d}\omega/\mathrm{d}t\,/\,\mathrm{d}t)^{1/3}$"
@@ -168,6 +173,7 @@ def tell(table):
     return "\n\n".join(
         [
             "## The literal drive",
+            _result(rows),
             f"The equations as printed, for {plural(rows['grain'].nunique(), 'grain')} of "
             + ", ".join(f"{a * 1e9:.0f}" for a in sorted(rows["a_eff"].unique()))
             + f" nm, with d omega/dt from {accelerations.min():.1e} to {accelerations.max():.1e} rad/s² and f = "
@@ -225,11 +231,34 @@ def tell(table):
     )
 
 
+def _result(rows):
+    """A paragraph: what both forms of the Coriolis term come to."""
+    used = torn_backwards(rows, MARK)
+    powers = np.array(exponents(used, MARK)).reshape(-1, 2)
+    exact = rows[(rows["coriolis"] == "exact") & rows["turns"].notna()]
+    words = []
+    if len(powers):
+        rate, step = (median_of(powers[:, k])["median"] for k in range(2))
+        words.append(
+            "With the Coriolis force half a step late a grain is turned backwards, and comes apart at an omega that "
+            f"goes as (d omega/dt)^{rate:.2f} dt^{step:.2f}, as that of a rigid grain does."
+        )
+    if len(exact):
+        turns = median_of(exact["turns"], exact["grain"])
+        words.append(
+            "With the exact one it turns only with omega s, s = I_spin/(I_orbit + I_spin) being the share of the "
+            f"monomers' own moments of inertia ({exact['spin_share'].min():.2g} to {exact['spin_share'].max():.2g} "
+            f"here), and comes apart where that is {measured(turns['median'], turns['error'])} times the omega at "
+            "which it does in the consistent model."
+        )
+    return " ".join(words) or "No grain came apart in these runs."
+
+
 def _law(rows, mark):
     """A row of the table of the explicit term."""
     used = torn_backwards(rows, mark)
     own, solid = (np.array(exponents(used, column)).reshape(-1, 2) for column in (mark, f"solid_{mark}"))
-    cells = [mark, f"{len(used)} ({used['grain'].nunique()})"]
+    cells = [MARK_WORDS[mark], f"{len(used)} ({used['grain'].nunique()})"]
     for power in range(2):
         for fits in (own, solid):
             s = median_of(fits[:, power])
