@@ -195,8 +195,8 @@ def _coverage(data):
         "types, 11 sizes from 50 to 550 nm, 30 seeds, that is 90 grains of each type and size. What the contacts of "
         f"grains can hold{at_rest} is said of all that were grown. The table counts the spin-ups. Where something is "
         "said of several cells (a material, type and size each), all of them have the same weight, as in the paper, "
-        "where each has 30 grains: means, medians (weighted by Harrell's rule) and fits do not depend on how many grains "
-        f"of each could be computed, but their errors do.{_missing(data)}"
+        "where each has 30 grains: means, medians (weighted by Harrell's rule) and fits do not depend on how many "
+        f"grains of each could be computed, but their errors do.{_missing(data)}"
     )
     counts = markdown_table(["drive", "type", *(f"{s / 1e3:g} nm" for s in sizes), "all"], rows)
     return "\n\n".join([text, counts, _marks(data)])
