@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import ratd
@@ -337,6 +338,28 @@ def test_thresholds_after_half_of_the_time_are_counted_once():
         "Of 3 thresholds of sudden starts 1 are the same after half of the time, 1 higher then (by up to 2.00 times), "
         "and 1 only reached later."
     )
+
+
+def test_thresholds_that_lie_apart_are_told_with_the_mass_that_is_left():
+    """One code loses a little more than a quarter at once and the other a little less, which comes as one piece."""
+    tried = [1.0, 1.1, 1.21, 2.0, 2.2]
+    left = {"ratd": [1.0, 0.74, 0.77, 0.77, 0.5], lammps.TURNING: [1.0, 0.77, 0.77, 0.77, 0.5]}
+    table = pd.DataFrame(
+        [
+            {"study": "rotation", "path": "driven", "type": "BA", "a_eff": 2e-7, "seed": 3, "cut_bound": 1.0}
+            | {"code": code, "omega": omega, "mass_left": mass}
+            for code, masses in left.items()
+            for omega, mass in zip(tried, masses, strict=True)
+        ]
+    )
+    (row,) = show_lammps.farthest_apart(table)  # the first loss is the same
+    assert (row["mark"], row["omega"]) == ("25 % of the mass", 1.1)
+    assert row["ratio"] == pytest.approx(np.sqrt(2.0 * 2.2 / (1.0 * 1.1)))
+    assert (row["ratd_left"], row["LAMMPS_left"]) == (0.74, 0.77)
+    assert "| BA 200 nm, seed 3 | 25 % of the mass | 2.00 | 1.1 | 0.740 | 0.770 |" in "\n".join(
+        show_lammps._apart(table)
+    )
+    assert show_lammps._apart(table[table["code"] == "none"]) == []
 
 
 def test_plan_of_lammps():

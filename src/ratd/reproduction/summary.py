@@ -8,7 +8,7 @@ from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown, pair_test
-from ratd.reproduction.argument import by_frame_and_type, over_strength, printed_above
+from ratd.reproduction.argument import by_frame_and_type, lammps_over_ratd, over_strength, printed_above
 from ratd.reproduction.bounds import (
     PM,
     printed_slopes,
@@ -109,41 +109,62 @@ def answer(data):
     Returns
     -------
     list of str
-        A paragraph of Markdown; none where a drive is missing.
+        A list in Markdown; none where a drive is missing.
     """
     if len(data.tables) < 2:
         return []
-    count, known, _ = printed_above(ratios(data.grown, data.plan.materials), "printed_over_firm")
-    held = (
-        "; what the contacts of a grain as grown can bear at most lies below the printed value for nearly all of them"
-        if count > NEARLY_ALL * known
-        else ""
-    )
-    exact = ""
-    study = data.study("literal")
-    if study is not None:
-        medians, single = literal.exact_over_consistent(study)
-        over = exact_over_printed(data, study)
-        printed = f", {between(over.min(), over.max())} times the printed omega_disr" if len(over) else ""
-        exact = (
-            f" With it exact, grains of {sizes_of(study)} lose their first mass at {between(*medians)} times the omega "
-            f"of the consistent model{printed}, in medians of types and sizes; the least "
-            f"single one has {number(single[0])} times the former."
-        )
     consistent, printed = (ratios(data.tables[drive], data.plan.materials) for drive in ("prescribed", "literal"))
     small, *_, large = shown_sizes(consistent)
     ends = [_ends_of_types(consistent, size) for size in (small, large)]
     level = number(_over_printed(printed)["median"])
-    return [
-        "**The answer**: a grain that turns as a whole (drive `prescribed`) comes apart below the printed omega_disr, "
-        f"and the farther below it the larger it is: medians of the types are {between(*ends[0])} times it at "
-        f"{small * PM / NM:g} nm and {between(*ends[1])} times at {large * PM / NM:g} nm, where the load, going as "
-        f"omega², is {between(ends[1][1] ** -2, ends[1][0] ** -2)} times lower{held}. Another code lets small grains "
-        "part where this one does. The equations as printed (`literal`) have no torque that could turn the grain. With "
-        "the Coriolis force half a step late, as assumed here, its omega_disr depends on d omega/dt and on the time "
-        f"step.{exact} With it late and d omega/dt fixed on Fig. 4, omega_disr lies at {level} times the printed one "
-        "in the median, the level of the cell of Fig. 4 by construction, and falls less with size than Table 3."
+    points = [
+        "A grain that turns as a whole (drive `prescribed`) comes apart below the printed omega_disr, and the farther "
+        f"below it the larger it is: medians of the types are {between(*ends[0])} times it at {small * PM / NM:g} nm "
+        f"and {between(*ends[1])} times at {large * PM / NM:g} nm, where the load, going as omega², is "
+        f"{between(ends[1][1] ** -2, ends[1][0] ** -2)} times lower.",
+        _independent(data),
+        "The equations as printed (drive `literal`) have no torque that could turn the grain. With the Coriolis force "
+        "half a step late, as assumed here, its omega_disr depends on d omega/dt and on the time step. With d omega/dt "
+        f"fixed on Fig. 4, omega_disr lies at {level} times the printed one in the median, the level of the cell of "
+        "Fig. 4 by construction, and falls less with size than Table 3.",
+        _exactly(data),
     ]
+    return ["\n".join(["**The answer**:", *(f"- {point}" for point in points if point)])]
+
+
+def _independent(data):
+    """A sentence: what says so besides the spin-ups of this code."""
+    told = []
+    count, known, _ = printed_above(ratios(data.grown, data.plan.materials), "printed_over_firm")
+    if count > NEARLY_ALL * known:
+        told.append(
+            "what the contacts of a grain as grown can bear at most lies below the printed value for nearly all"
+        )
+    table = data.study("lammps")
+    if table is not None:
+        grains = table[table["study"] == "rotation"]
+        ratio = lammps_over_ratd(lammps.thresholds(table))["median"]
+        told.append(
+            f"LAMMPS, an independent code, lets grains of {sizes_of(grains)} part at {number(ratio)} times the omega "
+            "at which this one does, in the median"
+        )
+    words = "; ".join(told)
+    return f"{words[0].upper()}{words[1:]}." if told else ""
+
+
+def _exactly(data):
+    """A sentence: what an exact Coriolis force makes of the drive `literal`."""
+    study = data.study("literal")
+    if study is None:
+        return ""
+    medians, single = literal.exact_over_consistent(study)
+    over = exact_over_printed(data, study)
+    printed = f", {between(over.min(), over.max())} times the printed omega_disr" if len(over) else ""
+    return (
+        f"With the Coriolis force exact, grains of {sizes_of(study)} lose their first mass at {between(*medians)} "
+        f"times the omega of the consistent model{printed}, in medians of types and sizes; the least single one has "
+        f"{number(single[0])} times the former."
+    )
 
 
 def _ends_of_types(table, size):

@@ -5,6 +5,7 @@ import numpy as np
 from ratd.figures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, logarithmic, new_figure, styled
 from ratd.markdown import markdown_table, measured, plural
 from ratd.statistics import median_of
+from ratd.units import NM
 from ratd.validation.lammps import CODES, COMPARISONS, MARKS, TURNING, threshold
 from ratd.validation.peer_lammps import DIFFERENCES
 
@@ -160,6 +161,56 @@ def _after_half(found, half):
     )
 
 
+def farthest_apart(table):
+    """Thresholds of the two codes that differ by more than `GOAL`, and what each grain had lost at the lower one.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.lammps.COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        Rows of `thresholds` with ratio, LAMMPS over ratd; omega, the upper end of the lower bracket [rad/s];
+        ratd_left, LAMMPS_left, the part of the mass in the largest fragment at that omega, NaN where it was not tried.
+    """
+    rows = []
+    for row in thresholds(table):
+        row["ratio"] = middle(row["LAMMPS"]) / middle(row["ratd"])
+        if abs(row["ratio"] - 1.0) > GOAL:
+            row["omega"] = min(row[name][1] for name in CODES)
+            same = (table["study"] == "rotation") & (table["path"] == row["start"])
+            same &= (table[GRAIN] == [row[key] for key in GRAIN]).all(axis=1)
+            same &= np.isclose(table["omega"], row["omega"], rtol=1e-9)
+            for name, which in zip(CODES, ("ratd", row["code"]), strict=True):
+                left = table.loc[same & (table["code"] == which), "mass_left"]
+                row[f"{name}_left"] = float(left.iloc[0]) if len(left) else np.nan
+            rows.append(row)
+    return rows
+
+
+def _apart(table):
+    """Paragraphs: the thresholds of `farthest_apart`, a table; none where there are none."""
+    rows = [
+        [
+            row["start"], row["code"], f"{row['type']} {row['a_eff'] / NM:g} nm, seed {row['seed']:g}", row["mark"],
+            f"{row['ratio']:.2f}", f"{row['omega']:.3g}",
+            *("–" if np.isnan(row[f"{name}_left"]) else f"{row[f'{name}_left']:.3f}" for name in CODES),
+        ]
+        for row in farthest_apart(table)
+    ]  # fmt: skip
+    if not rows:
+        return []
+    head = ["start", "beside ratd", "grain", "mark", "LAMMPS/ratd", "omega [rad/s]", "left, ratd", "left, LAMMPS"]
+    return [
+        f"The others, with the part of the mass that each code leaves in the largest fragment at the lower of the two "
+        f"thresholds. Mass goes in pieces, so that a mark can lie far off where one code loses a little more than "
+        f"{100 * (1 - min(MARKS.values())):g} % at once and the other a little less:",
+        markdown_table(head, rows),
+    ]
+
+
 def tell(table):
     """The section of the report, Markdown."""
     rows = table[table["study"] == "rotation"]
@@ -217,6 +268,7 @@ def tell(table):
                 for (start, code), good in within.items()
             )
             + ". " + _after_half(found, thresholds(table, "mass_half_way")),
+            *_apart(table),
             "What differs between the two models, all else being mapped pair by pair:",
             "\n".join(f"- {difference}" for difference in DIFFERENCES),
         ]
