@@ -9,7 +9,7 @@ import pytest
 
 from ratd.beyond import slopes
 from ratd.reproduction import course, disrupted, peak, shapes, structure, summary
-from ratd.reproduction.argument import by_frame_and_type
+from ratd.reproduction.argument import by_frame_and_type, by_size
 from ratd.reproduction.bounds import table3_omega
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import Answer, Row
@@ -269,6 +269,9 @@ def test_lammps_is_told_by_frame_and_type():
     first, *others = by_frame_and_type(rows).split("; ")
     assert first.startswith("BA 0.8, BAM2 1.1 (") and all(other.startswith("BA 1 (") for other in others)
     assert len(others) == 2
+    # sizes that differ by rounding are one
+    sized = [row | {"a_eff": (1 + row["seed"] * 1e-15) * (2e-7 if row["type"] == "BAM2" else 1e-7)} for row in rows]
+    assert by_size(sized) == "100 nm 1, 200 nm 1.1"
 
 
 def test_exact_term_is_set_beside_the_printed_fit():

@@ -3,13 +3,21 @@
 import numpy as np
 import pandas as pd
 
-from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of
+from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.firm_bound import slide_forces
 from ratd.formula_table import FORMULAE, OWN, formula_effects
 from ratd.markdown import markdown_table, plural
 from ratd.materials import pull_off_force, reduced_radius
 from ratd.parameters import MARKS
-from ratd.reproduction.bounds import by_type_and_size, median_and_range, ratios, same_grains, table3_omega, whole_nm
+from ratd.reproduction.bounds import (
+    PM,
+    by_type_and_size,
+    median_and_range,
+    ratios,
+    same_grains,
+    table3_omega,
+    whole_nm,
+)
 from ratd.reproduction.text import number, with_error
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
@@ -262,6 +270,22 @@ def by_frame_and_type(rows):
             types.append(f"{kind} {with_error(own['median'], own['error'])}")
         ways.append(f"{', '.join(types)} ({lammps.START[start]}, {lammps.FRAME[code]})")
     return "; ".join(ways)
+
+
+def by_size(rows):
+    """Medians of thresholds of LAMMPS over those of ratd, text: by size.
+
+    Parameters
+    ----------
+    rows : list of dict
+        From `lammps.thresholds`.
+    """
+    sizes = size_key(pd.Series([row["a_eff"] for row in rows]))
+    told = []
+    for size in sorted(sizes.unique()):
+        own = lammps_over_ratd([row for row, its in zip(rows, sizes, strict=True) if its == size])
+        told.append(f"{size * PM / NM:g} nm {with_error(own['median'], own['error'])}")
+    return ", ".join(told)
 
 
 def ratios_to_ratd(rows):

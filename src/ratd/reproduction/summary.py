@@ -8,7 +8,7 @@ from ratd.composition import table1, table2
 from ratd.ensemble import PAPER_MEAN_RADIUS, cell_of, size_key
 from ratd.markdown import markdown_table, plural
 from ratd.reproduction import grown, pair_test
-from ratd.reproduction.argument import by_frame_and_type, lammps_over_ratd, over_strength, printed_above
+from ratd.reproduction.argument import by_frame_and_type, by_size, lammps_over_ratd, over_strength, printed_above
 from ratd.reproduction.bounds import (
     PM,
     printed_slopes,
@@ -315,13 +315,13 @@ def _lammps(data):
     if grains["a_eff"].max() < data.grown["a_eff"].max() * (1 - 1e-9):
         untried.append(f"grains of more than {grains['a_eff'].max() / NM:g} nm, for which print and model differ most")
     rest = f" Not tried: {', '.join(untried)}." if untried else ""
+    rows = lammps.thresholds(table)
     return [
         "**LAMMPS**, an independent code, lets the same grains come apart at nearly the same omega. LAMMPS over "
-        f"this code, medians: {by_frame_and_type(lammps.thresholds(table))}. In the inertial frame contacts of LAMMPS "
-        "lose some of their load as the grain turns, in one that turns with the grain they do not "
-        "(docs/validation.md). These "
-        f"are {plural(len(grains), 'grain')} of {sizes_of(grains)} and up to {int(grains['n_monomers'].max())} "
-        f"monomers.{rest}"
+        f"this code, medians: {by_frame_and_type(rows)}. In the inertial frame contacts of LAMMPS lose some of their "
+        "load as the grain turns, in one that turns with the grain they do not (docs/validation.md). By size, all of "
+        f"these together: {by_size(rows)}. These are {plural(len(grains), 'grain')} of up to "
+        f"{int(grains['n_monomers'].max())} monomers.{rest}"
     ]
 
 
