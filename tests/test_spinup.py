@@ -1,6 +1,7 @@
 """Spin-up of whole grains: two monomers against the exact answer, records, energy, checkpoints, errors."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import ratd
 from ratd import spinup
 from ratd.engine.layout import COMPRESSION, DT
 from ratd.engine.state import contact_field
+from ratd.growth import grow
 from ratd.materials import MATERIALS, equilibrium_compression, reduced_radius
 from ratd.shape import inertia_tensor
 from ratd.spinup import _edge, relax, spin_up
@@ -207,6 +209,19 @@ def test_relaxed_grain_rests_about_its_axis(grain):
     assert tensor[2, 2] >= tensor[0, 0] and tensor[2, 2] >= tensor[1, 1]
     assert np.abs(tensor - np.diag(np.diag(tensor))).max() < 1e-9 * tensor[2, 2]
     assert state.scalar[DT] > 0.0
+
+
+def test_contact_that_rings_in_time_with_the_rounds_comes_to_rest():
+    """Without damping, a contact of this grain is at a turning point after every two rounds of 50 steps, for ever."""
+    state = relax(grow("BAM1", 200e-9, replace(MATERIALS["q-S"], viscous_time=0.0), 3))
+    assert spinup.residual_force(state) < spinup.RESIDUAL * contact_field(state, spinup.PULL_OFF).min() * 1.01
+
+
+def test_rounds_of_the_relaxation_get_longer():
+    ends = np.cumsum(50 + np.arange(3500) // 1000)
+    found = [spinup.round_of(steps) for steps in range(ends[-1])]
+    assert np.flatnonzero([done == 0 for _, done in found]).tolist() == [0, *ends[:-1]]
+    assert {length for length, _ in found} == {50, 51, 52, 53} and found[-1] == (53, 52)
 
 
 @pytest.mark.parametrize(

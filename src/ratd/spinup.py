@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from ratd._accelerate import jit
 from ratd.bound import cut_bound
 from ratd.drives import AT_REST, OMEGA_RAT, SPIN_UP_LAWS, make_drive
 from ratd.engine.advance import FEW_CONTACTS, FULL, NOT_FINITE, STEPS_DONE, advance, residual_force
@@ -46,7 +47,12 @@ DAMPINGS = ("implicit", "explicit")
 RESIDUAL = 1e-3
 """A grain is relaxed when no net force exceeds this part of the least pull-off force in it."""
 RELAXATION_STEPS = 50
-RELAXATION_ROUNDS = 20_000
+"""Of a round of the relaxation, after which the kinetic energy is looked at."""
+PATIENCE = 1000
+"""Rounds after which they take a step more each: a contact that rings in time with the rounds is caught at its turning
+points only, where there is no velocity to take from it."""
+RELAXATION_LIMIT = 1_000_000
+"""Steps after which a grain that is not yet relaxed is given up."""
 EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.005}
 TIMESTEP_FACTOR = 0.125
 """What a spin-up takes when it is not told otherwise. Grains up to 300 nm are then within about 3 % of the limit of a
@@ -111,17 +117,18 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
 
     Notes
     -----
-    Integrated at rest with damping; whenever the kinetic energy falls, all velocities are set to zero, so that the
-    slow swaying of long arms, which contacts hardly damp, does not go on for ever.
+    Integrated at rest with damping; whenever the kinetic energy has fallen in a round (`round_of`), all velocities are
+    set to zero, so that the slow swaying of long arms, which contacts hardly damp, does not go on for ever.
     """
     state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
     goal = residual_goal(state)
     kinetic = 0.0
-    for _ in range(RELAXATION_ROUNDS):
+    while state.counter[STEPS] < RELAXATION_LIMIT:
         residual = residual_force(state)
         if residual <= goal:
             break
-        state = _advance(state, AT_REST, np.inf, state.counter[STEPS] + RELAXATION_STEPS, -1, timestep_factor, True)[0]
+        until = state.counter[STEPS] + round_of(state.counter[STEPS])[0]
+        state = _advance(state, AT_REST, np.inf, until, -1, timestep_factor, True)[0]
         before, kinetic = kinetic, stored_energy(state)[0]
         if kinetic <= before:
             come_to_rest(state)
@@ -130,6 +137,27 @@ def relax(grain, *, timestep_factor=TIMESTEP_FACTOR):
         raise RuntimeError(f"{not_at_rest(goal)}; it is {residual:.2e} N")
     settle(state, timestep_factor)
     return state
+
+
+@jit
+def round_of(steps):
+    """The round of the relaxation in which a grain is.
+
+    Parameters
+    ----------
+    steps : int
+        Of the relaxation that are done.
+
+    Returns
+    -------
+    length, done : int
+        Steps of the round, and how many of them are done, 0 where the round before has just ended.
+    """
+    length = RELAXATION_STEPS
+    while steps >= PATIENCE * length:
+        steps -= PATIENCE * length
+        length += 1
+    return length, steps % length
 
 
 def not_at_rest(goal):

@@ -42,7 +42,7 @@ from ratd.engine.layout import (
     STRESS_SAMPLES, STRESS_SUM, TIME, TORQUE_WORK, UNWIND, VX, WX,
 )  # fmt: skip
 from ratd.laws.jkr import COMPRESSION_END
-from ratd.spinup import RELAXATION_STEPS
+from ratd.spinup import round_of
 
 RESTED, PAUSED = 5, 6
 """Further reasons why a grain stopped, next to those of `ratd.engine.advance`: relaxed; end of its segment."""
@@ -145,7 +145,6 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     law = drive_of(arena.drive[grain])
     relaxing = task[RELAXING] > 0
     turning = not law.torque  # the grain stays behind the frame
-    centre_every = RELAXATION_STEPS if relaxing else CENTRE_EVERY
 
     smallest, mean = radii(body, buffer)
     far_reach = FAR * mean
@@ -174,6 +173,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
     stress_samples = scalar[STRESS_SAMPLES]
     omega, domega = angular_velocity(law, time)
     while True:
+        round_over = relaxing and round_of(steps)[1] == 0
         if renew or changed:
             link_contacts(body, counts)
         if changed:
@@ -182,7 +182,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
             excess = math.nan
             update_rates(body, timestep_factor, implicit_damping, buffer)
             dt = scalar[DT]
-        if renew or changed or (steps % centre_every == 0 and steps != centred):
+        if renew or changed or ((round_over or steps % CENTRE_EVERY == 0) and steps != centred):
             fragments = find_fragments(body, buffer, counts)
             centred = steps
         if renew or changed or stale:
@@ -234,7 +234,7 @@ def advance_grains(arena, active, timestep_factor, implicit_damping):
         if counter[CONTACTS] + pairs > state.pair_i.shape[0]:
             code = FULL
             break
-        if relaxing and steps % RELAXATION_STEPS == 0:
+        if round_over:
             if thread == 0:
                 counter[STEPS] = steps
                 scalar[OMEGA] = omega

@@ -16,7 +16,7 @@ from ratd.engine.state import new_state, with_room
 from ratd.shape import _diagonalise, porosity, semi_axes
 from ratd.spinup import (
     RECORDS,
-    RELAXATION_ROUNDS,
+    RELAXATION_LIMIT,
     RELAXATION_STEPS,
     Run,
     Watch,
@@ -110,7 +110,7 @@ class Spinning:
         task[SEGMENT_END] = (run.state.counter[STEPS] // self.segment + 1) * self.segment
         if self.relaxing:
             drive[RESIDUAL], drive[KINETIC] = self.residual, self.kinetic
-            task[STEPS_GOAL], task[FEWEST], task[GOALS] = RELAXATION_ROUNDS * RELAXATION_STEPS, -1, 0
+            task[STEPS_GOAL], task[FEWEST], task[GOALS] = RELAXATION_LIMIT, -1, 0
             return
         task[STEPS_GOAL], task[FEWEST] = run.steps_goal, run.fewest
         # The last of these records is made by the host, which alone takes snapshots and ends runs.
