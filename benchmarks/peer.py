@@ -136,7 +136,7 @@ def read_log(text):
     Raises
     ------
     PeerError
-        If the log has no finished run.
+        If the log has no finished run, or one so short that the processor's clock did not tick in it.
     """
     loops = re.findall(r"^Loop time of (\S+) on (\d+) procs for (\d+) steps", text, re.M)
     if len(loops) < 2:
@@ -146,6 +146,8 @@ def read_log(text):
     use = re.findall(r"([\d.]+)% CPU use", text)
     # Less than 100 % where another process was on the core.
     part = min(1.0, float(use[-1]) / 100.0) if use else 1.0
+    if part == 0.0:
+        raise PeerError(f"LAMMPS saw no processor time in {loops[-1][2]} steps that took {loops[-1][0]} s: take more.")
     version = re.match(r"LAMMPS \((.*)\)", text)
     return Timing(
         version=version.group(1) if version else "unknown version",

@@ -266,6 +266,8 @@ def test_log_of_lammps_gives_processor_time_of_the_last_run(benchmarks):
     assert peer.read_log(LOG) == peer.Timing("1 Jan 2000", 1.0, 19, 20, 0)
     with pytest.raises(peer.PeerError, match="did not finish"):
         peer.read_log(LOG.split("99.0%")[0])
+    with pytest.raises(peer.PeerError, match="no processor time in 100 steps that took 2.0 s"):
+        peer.read_log(LOG.replace("50.0% CPU", "0.0% CPU"))
 
 
 @pytest.mark.skipif(shutil.which("lmp") is None, reason="LAMMPS is not there")
@@ -273,6 +275,6 @@ def test_lammps_holds_the_contacts_of_the_aggregate(benchmarks):
     from benchmarks import grains, peer
 
     grain = grains.grown("BAM2", 30)
-    timing = peer.run(peer.find(), grain, omega=1e6, timestep=1e-13, steps=50, warm=5, classes=2)
+    timing = peer.run(peer.find(), grain, omega=1e6, timestep=1e-13, steps=20_000, warm=5, classes=2)
     assert timing.contacts == grain.n_contacts
     assert timing.seconds > 0.0 and timing.classes == 2
