@@ -9,11 +9,11 @@ import pytest
 
 from ratd.beyond import slopes
 from ratd.reproduction import course, disrupted, peak, shapes, structure, summary
-from ratd.reproduction.argument import by_frame_and_type, by_size
+from ratd.reproduction.argument import by_frame_and_type, by_size, rolling_limit
 from ratd.reproduction.bounds import table3_omega
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import Answer, Row
-from ratd.validation.lammps import COMPARISONS
+from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, TURNING
 from synthetic_runs import make_run, make_table, marked
 
 
@@ -272,6 +272,22 @@ def test_lammps_is_told_by_frame_and_type():
     # sizes that differ by rounding are one
     sized = [row | {"a_eff": (1 + row["seed"] * 1e-15) * (2e-7 if row["type"] == "BAM2" else 1e-7)} for row in rows]
     assert by_size(sized) == "100 nm 1, 200 nm 1.1"
+
+
+def test_limit_of_rolling_is_told_where_it_was_left_out():
+    """LAMMPS at half of the omega of ratd with the limit, at the same and at twice it without."""
+    runs = [("rotation", 3, 2, 0), (ELASTIC_ROLLING, 4, 4, 0), ("rotation", 3, 2, 1), (ELASTIC_ROLLING, 3, 4, 1)]
+    table = pd.DataFrame(
+        [
+            {"study": study, "path": "driven", "code": code, "type": "BA", "a_eff": 1e-7, "seed": seed}
+            | {"cut_bound": 1.0, "omega": 2.0**k, "mass_left": 1.0 if k < whole else 0.9}
+            for study, ours, theirs, seed in runs
+            for code, whole in (("ratd", ours), (TURNING, theirs))
+            for k in range(6)
+        ]
+    )
+    assert "is 0.5–0.5 in 2 driven grains, and 1–2 where rolling has no limit in either code" in rolling_limit(table)
+    assert rolling_limit(table[table["study"] == "rotation"]) == ""
 
 
 def test_exact_term_is_set_beside_the_printed_fit():

@@ -117,12 +117,11 @@ MODES = {
 }
 
 
-def move_a_pair(mode, speed, duration):
+def move_a_pair(mode, speed, duration, material=MATERIALS["q-S"]):
     """Velocities, and spins times radius, of a pair that starts from equilibrium: at first, from ratd, from LAMMPS.
 
     All over the speed [m/s] of the start.
     """
-    material = MATERIALS["q-S"]
     r = reduced_radius(*RADII)
     delta_0 = equilibrium_compression(r, material.surface_energy, material.reduced_modulus)
     position = np.array([[0.0, 0.0, 0.0], [RADII.sum() - delta_0, 0.0, 0.0]])
@@ -167,6 +166,16 @@ def test_a_pair_moves_alike_in_both_codes(mode, speed, duration):
     change = np.abs(mine - start).max()
     assert change > 0.02
     np.testing.assert_allclose(mine, theirs, atol=0.02 * change)
+
+
+@needs_lammps
+def test_a_pair_rolls_back_in_both_codes_where_rolling_has_no_limit():
+    """At a speed at which it would go far beyond the critical displacement."""
+    elastic = replace(MATERIALS["q-S"], critical_rolling_displacement=lammps.NO_ROLLING_LIMIT)
+    start, mine, theirs = move_a_pair("rolling", 1.0, 1e-9, elastic)
+    np.testing.assert_allclose(mine, theirs, atol=0.02 * np.abs(mine - start).max())
+    _, limited, _ = move_a_pair("rolling", 1.0, 1e-9)
+    assert np.abs(limited - mine).max() > 0.1 * np.abs(mine - start).max()
 
 
 @needs_lammps
@@ -312,7 +321,11 @@ def test_lammps_is_drawn_and_told(tmp_path):
     settings = {"material": "q-S", "type": "BA", "a_eff": 60e-9, "seed": 0, "timestep_factor": 0.05}
     settings |= {"study": "rotation", "step": 1.2, "rotations": {"sudden": 0.5, "driven": 0.1}}
     rows = lammps.compute(settings)
-    rows += lammps.compute({"study": "force", "material": "a-C", "pairs": [[2e-8, 5e-8]], "points": 11})
+    rolling = lammps.compute(settings | {"study": lammps.ELASTIC_ROLLING, "rotations": {"driven": 0.1}})
+    assert {(row["study"], row["path"], row["code"]) for row in rolling} == {
+        (lammps.ELASTIC_ROLLING, "driven", code) for code in ("ratd", lammps.TURNING)
+    }
+    rows += rolling + lammps.compute({"study": "force", "material": "a-C", "pairs": [[2e-8, 5e-8]], "points": 11})
     write_table(tmp_path / "a.nc", rows, lammps.KIND, {})
     table = read_tables([tmp_path / "a.nc"], lammps.KIND)
     found = show_lammps.thresholds(table)
@@ -362,12 +375,32 @@ def test_thresholds_that_lie_apart_are_told_with_the_mass_that_is_left():
     assert show_lammps._apart(table[table["code"] == "none"]) == []
 
 
+def test_elastic_rolling_is_set_beside_the_same_grains_with_the_limit():
+    def runs(study, code, seed, holds):  # whole up to `holds` of the omega that are tried
+        grain = {"type": "BA", "a_eff": 1e-7, "seed": seed, "cut_bound": 1.0, "study": study, "path": "driven"}
+        return [grain | {"code": code, "omega": 2.0**k, "mass_left": 1.0 if k <= holds else 0.9} for k in range(6)]
+
+    elastic = lammps.ELASTIC_ROLLING
+    table = pd.DataFrame(
+        runs("rotation", "ratd", 0, 2) + runs("rotation", lammps.TURNING, 0, 1)
+        + runs(elastic, "ratd", 0, 3) + runs(elastic, lammps.TURNING, 0, 3)
+        + runs("rotation", "ratd", 1, 2) + runs("rotation", lammps.TURNING, 1, 2)
+    )  # fmt: skip
+    (row,) = show_lammps.elastic_rolling(table).to_dict("records")
+    assert (row["seed"], row["mark"]) == (0, "first loss")
+    assert [row[name] for name in ("with", "without", "ratd", "LAMMPS")] == pytest.approx([0.5, 1.0, 2.0, 4.0])
+    text = "\n".join(show_lammps._elastic_rolling(table))
+    assert "| first loss | with its limit | 1 | 0.5" in text and "| first loss | without | 1 | 1" in text
+    assert show_lammps._elastic_rolling(table[table["study"] == "rotation"]) == []
+
+
 def test_plan_of_lammps():
     plan = Plan(CONFIG)
     for extent in EXTENTS:
         pieces = plan.pieces[extent]["lammps"]
         grains = plan.config[extent]["lammps"]["grains"]
-        assert sum(piece["study"] == "rotation" for piece in pieces.values()) == sum(g["seeds"] for g in grains)
+        for study in ("rotation", lammps.ELASTIC_ROLLING):
+            assert sum(piece["study"] == study for piece in pieces.values()) == sum(g["seeds"] for g in grains)
         assert {piece["material"] for piece in pieces.values() if piece["study"] == "force"} == set(
             plan.config[extent]["lammps"]["materials"]
         )

@@ -18,7 +18,7 @@ from ratd.reproduction.bounds import (
     table3_omega,
     whole_nm,
 )
-from ratd.reproduction.text import number, with_error
+from ratd.reproduction.text import between, number, with_error
 from ratd.statistics import mean_of, median_of
 from ratd.units import NM
 from ratd.validation.show import lammps, literal
@@ -247,9 +247,28 @@ def lammps_section(data):
             f"medians, ± from drawing grains: {by_frame_and_type(found)}. Below are the grains set into rotation at "
             "once in the inertial frame, where no force of a turning frame enters; there a contact of LAMMPS that is "
             "parallel to the axis loses some of its load as the grain turns, in a frame that turns it does not "
-            "(docs/validation.md tells where the two codes differ).",
+            f"(docs/validation.md tells where the two codes differ).{rolling_limit(table)}",
             markdown_table(head, sorted(rows, key=lambda row: (row[0], float(row[1].split()[0]), int(row[2])))),
         ]
+    )
+
+
+def rolling_limit(table):
+    """A sentence: what is left between the two codes where contacts roll elastically however far.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.validation.lammps.COLUMNS`.
+    """
+    found = lammps.elastic_rolling(table)
+    first = found[found["mark"] == next(iter(lammps.MARKS))]
+    if first.empty:
+        return ""
+    limited, free = (between(first[name].min(), first[name].max()) for name in ("with", "without"))
+    return (
+        f" At the first loss of mass, LAMMPS over ratd is {limited} in {plural(len(first), 'driven grain')}, and "
+        f"{free} where rolling has no limit in either code; LAMMPS lowers that limit where a contact is pulled."
     )
 
 

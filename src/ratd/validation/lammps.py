@@ -5,8 +5,12 @@ once, for some rotations and free from then on; again for other omega until the 
 happens in the inertial frame, in LAMMPS there and in a frame that turns with the grain, which is the same motion in
 other coordinates. *Driven*: omega grows in small steps, and in between an outer torque keeps the largest fragment
 turning with omega: `PARTS` times a step a rigid rotation gives it the angular momentum I omega. That is the drive
-`prescribed` in a form that both codes can do, ratd in the inertial frame and LAMMPS in one that turns.
+`prescribed` in a form that both codes can do, ratd in the inertial frame and LAMMPS in one that turns. *Elastic
+rolling*: driven, with no limit to the elastic rolling in either code, which tells how much of what is left between
+them comes from that limit (see `ratd.validation.peer_lammps.DIFFERENCES`).
 """
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,10 +31,11 @@ from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 CODES = ("ratd", "LAMMPS")
 TURNING = "LAMMPS, turning frame"
+ELASTIC_ROLLING = "elastic rolling"
 COMPARISONS = (("sudden", "LAMMPS"), ("sudden", TURNING), ("driven", TURNING))
 """Start, and what stands beside ratd."""
 COLUMNS = {
-    "study": ("", "force (of two spheres) or rotation (of a grain)"),
+    "study": ("", "force (of two spheres), rotation (of a grain) or elastic rolling (the same, with no limit to it)"),
     "code": ("", f"ratd, LAMMPS or {TURNING}"),
     "version": ("", "version of LAMMPS"),
     "path": ("", "force: approach or withdrawal; rotation: sudden or driven"),
@@ -56,6 +61,8 @@ PARTS = 8
 """A grain is looked at so many times in a run, which ends where it has lost 25 % of its mass."""
 FIRST_OMEGA = 0.4
 """Driven grains are looked at from this part of the cut bound on."""
+NO_ROLLING_LIMIT = 1.0
+"""Critical rolling displacement that no contact gets to [m]."""
 GREATEST_RATIO = 2.0
 """No omega above this part of the cut bound is tried."""
 
@@ -288,8 +295,10 @@ def threshold(omega, mass, limit):
 
 
 def rotate(settings, progress):
-    """Rows of `COLUMNS` for one grain: both codes, sudden and driven."""
-    material = get_material(settings["material"])
+    """Rows of `COLUMNS` for one grain: both codes, sudden and driven, or driven with elastic rolling."""
+    study, material = settings["study"], get_material(settings["material"])
+    if study == ELASTIC_ROLLING:
+        material = replace(material, critical_rolling_displacement=NO_ROLLING_LIMIT)
     grain = grow(settings["type"], settings["a_eff"], material, settings["seed"])
     state = relax(grain, timestep_factor=settings["timestep_factor"])
     unit = cut_bound(grain)
@@ -299,17 +308,17 @@ def rotate(settings, progress):
         "LAMMPS": lambda: InLammps(state, material),
         TURNING: lambda: InLammps(state, material, turning=True),
     }
-    runs = [("sudden", code, lambda make: sudden(make, unit, step, rotations["sudden"])) for code in makers]
-    runs += [("driven", code, lambda make: driven(make, unit, step, rotations["driven"])) for code in ("ratd", TURNING)]
+    runs = [("sudden", sudden, code) for code in makers if study == "rotation"]
+    runs += [("driven", driven, code) for code in ("ratd", TURNING)]
     rows = []
-    for path, code, how in runs:
+    for path, how, code in runs:
         make = makers[code]
         with make() as example:
             timestep = example.timestep
-        found = how(make)
+        found = how(make, unit, step, rotations[path])
         rows += [
             _row(
-                study="rotation",
+                study=study,
                 **grain_values(grain),
                 code=code,
                 path=path,
@@ -420,8 +429,9 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        study. For force: material, pairs (list of two radii [m]), points. For rotation: material, type, a_eff [m],
-        seed, timestep_factor, step (ratio of two omega), rotations {sudden, driven}.
+        study. For force: material, pairs (list of two radii [m]), points. For rotation and elastic rolling: material,
+        type, a_eff [m], seed, timestep_factor, step (ratio of two omega), rotations {sudden, driven}; only that of
+        driven is needed for elastic rolling.
     progress : callable, optional
         Called with a sentence.
 
@@ -430,7 +440,7 @@ def compute(settings, progress=None):
     list of dict
         Rows of `COLUMNS`; what does not belong to the study is empty or NaN.
     """
-    return {"force": curves, "rotation": rotate}[settings["study"]](settings, progress)
+    return {"force": curves, "rotation": rotate, ELASTIC_ROLLING: rotate}[settings["study"]](settings, progress)
 
 
 def _row(**values):

@@ -151,11 +151,14 @@ class Plan:
     def _lammps(self, own):
         pairs = [[a * NM for a in pair] for pair in own["pairs_nm"]]
         forces = {"study": "force", "points": own["points"], "pairs": pairs}
-        rotation = {"study": "rotation"} | {
-            key: own[key] for key in ("material", "timestep_factor", "step", "rotations")
-        }
+        shared = {key: own[key] for key in ("material", "timestep_factor", "step", "rotations")}
+        driven = shared | {"study": "elastic rolling", "rotations": {"driven": own["rotations"]["driven"]}}
         curves = {f"force_{material}": forces | {"material": material} for material in own["materials"]}
-        return curves | _each_grain(own["grains"], rotation)
+        return (
+            curves
+            | _each_grain(own["grains"], shared | {"study": "rotation"})
+            | {f"elastic_{name}": piece for name, piece in _each_grain(own["grains"], driven).items()}
+        )
 
 
 def _each_grain(grains, shared):
