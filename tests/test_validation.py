@@ -15,7 +15,7 @@ from ratd import schema
 from ratd.drives import angular_velocity, make_drive
 from ratd.growth import grow
 from ratd.markdown import markdown_table, measured, measured_range
-from ratd.materials import MATERIALS
+from ratd.materials import MATERIALS, equilibrium_compression
 from ratd.provenance import provenance
 from ratd.solid import solid_omega, spin_share, turned_by_spins
 from ratd.spinup import EPSILON, TIMESTEP_FACTOR
@@ -30,6 +30,7 @@ from ratd.validation import (
     growth,
     literal,
     pull_off,
+    relaxation,
     theory,
     vibrating_pair,
 )
@@ -43,6 +44,7 @@ from ratd.validation.show import frames as show_frames
 from ratd.validation.show import growth as show_growth
 from ratd.validation.show import literal as show_literal
 from ratd.validation.show import pull_off as show_pull_off
+from ratd.validation.show import relaxation as show_relaxation
 from ratd.validation.show import theory as show_theory
 from ratd.validation.show.report import SHOWN, report, section
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
@@ -263,6 +265,45 @@ def test_theory(tmp_path):
     assert all(0.3 < row["omega_first_loss"] / row["cut_bound"] < 3.0 for row in rows)
     assert "2 grains" in works(show_theory, rows)
     write_table(tmp_path / "a.nc", rows, theory.KIND, {})
+
+
+def test_relaxation(tmp_path, monkeypatch):
+    """Of these two grains the second has a monomer that touches another by chance."""
+    settings = {"material": "q-S", "type": "BAM2", "a_eff": 200e-9, "seeds": 6, "timestep_factor": TIMESTEP_FACTOR}
+    rows = relaxation.compute(settings | {"damped": True})[-2:]
+    assert [row["n_contacts"] - 3 * row["n_monomers"] for row in rows] == [-6, -5]
+    for row in rows:
+        assert (row["rested"], row["n_contacts_lost"], row["n_parts"]) == (1, 0, 1)
+    assert rows[0]["moved"] < 1e-12 and 1e-5 < rows[1]["moved"] < 1e-2
+    text = works(show_relaxation, rows)
+    assert "All of them come to rest." in text and "| BAM2 | own | 2 | 0 | 1 | 0 | 0 | 0 | 0.00022 (0.00022) |" in text
+
+    monkeypatch.setattr("ratd.spinup.RELAXATION_LIMIT", 50)
+    said = []
+    rows = relaxation.compute(settings | {"damped": False}, progress=said.append)
+    (restless,) = said
+    assert "seed 5: the grain does not come to rest" in restless
+    write_table(tmp_path / "a.nc", rows, relaxation.KIND, {})
+    text = works(show_relaxation, relaxation.compute(settings | {"damped": True}) + rows)
+    assert "2 grains never came to rest: q-S BAM2 200 nm, seed 5; q-S BAM2 200 nm, seed 5 (not damped)." in text
+    assert "| BAM2 | none | 6 | 1 | 0 | 0 |" in text
+
+
+def test_what_relaxation_changes():
+    """Of a pair that just touches, and of three monomers of which two come to touch as the others pull them in."""
+    a, material = 20e-9, MATERIALS["q-S"]
+    delta_0 = equilibrium_compression(a / 2, material.surface_energy, material.reduced_modulus)
+    pair = ratd.Grain([[0.0, 0.0, 0.0], [2 * a, 0.0, 0.0]], [a, a], material)
+    found = relaxation.rest(pair, TIMESTEP_FACTOR)
+    assert found["moved"] == pytest.approx(0.5 * delta_0 / a, rel=0.01)
+    own = 2 * 0.4 * a**2
+    assert found["inertia"] == pytest.approx((2 * (a - delta_0 / 2) ** 2 + own) / (2 * a**2 + own), rel=1e-4)
+
+    apart = 2 * a + 0.3 * delta_0
+    top = np.sqrt((2 * a) ** 2 - (apart / 2) ** 2)
+    three = ratd.Grain([[0.0, 0.0, 0.0], [apart, 0.0, 0.0], [apart / 2, top, 0.0]], [a] * 3, material)
+    found = relaxation.rest(three, TIMESTEP_FACTOR)
+    assert [found[name] for name in ("n_contacts", "n_contacts_made", "n_contacts_lost", "n_parts")] == [2, 1, 0, 1]
 
 
 def test_growth():
@@ -603,7 +644,7 @@ def test_plan_names_every_piece_once():
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "literal", "theory", "growth", "energy", "energy_step", "frames", "forces",
-            "lammps",
+            "lammps", "relaxation",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and import_module(f"ratd.validation.{check}").KIND in schema.KINDS

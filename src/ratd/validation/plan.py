@@ -68,6 +68,7 @@ class Plan:
             "literal": self._literal,
             "theory": self._theory,
             "growth": self._growth,
+            "relaxation": self._relaxation,
             "energy": self._energy,
             "energy_step": self._free_grain,
             "frames": self._free_grain,
@@ -128,6 +129,16 @@ class Plan:
             for grains in own["grains"] for kind, size in product(grains["types"], grains["sizes_nm"])
         }  # fmt: skip
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
+
+    def _relaxation(self, own):
+        return {
+            f"{way}_{material}_{kind}_{size}nm": {
+                "timestep_factor": self.config["production"]["timestep_factor"], "damped": way == "damped",
+                "material": material, "type": kind, "a_eff": size * NM, "seeds": grains["seeds"],
+            }
+            for way, grains in own.items()
+            for material, kind, size in product(grains["materials"], grains["types"], grains["sizes_nm"])
+        }  # fmt: skip
 
     def _energy(self, own):
         shared = {"material": own["material"], "a_eff": own["size_nm"] * NM}

@@ -11,10 +11,11 @@ from ratd.validation.show import (
     lammps,
     literal,
     pull_off,
+    relaxation,
     theory,
 )
 
-MODULES = (convergence, energy, energy_step, forces, frames, growth, lammps, literal, pull_off, theory)
+MODULES = (convergence, energy, energy_step, forces, frames, growth, lammps, literal, pull_off, relaxation, theory)
 SHOWN = {module.__name__.rpartition(".")[2]: module for module in MODULES}
 """Check -> module with its `draw` and `tell`."""
 

@@ -1,0 +1,104 @@
+"""Relaxation: whether grains as grown come to rest, and what that changes in them.
+
+A spin-up begins with the grain at rest. One grain that does not come to rest ends its job with an error, and the table
+of the paper is not made; so all grains of the ensemble are relaxed, which is quick beside a spin-up.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ratd.engine.layout import CONTACTS, X
+from ratd.engine.state import monomer_rows
+from ratd.growth import grow
+from ratd.materials import get_material
+from ratd.neighbours import connected_components
+from ratd.shape import centre_of_mass, principal_axes
+from ratd.spinup import relax
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+
+COLUMNS = {
+    **GRAIN_COLUMNS,
+    "viscous_time": ("s", "T_vis of the damping, 0 without"),
+    "rested": ("1", "1 where the grain came to rest, 0 where it did not; what follows is then not known"),
+    "n_contacts": ("1", "contacts of the grain as grown"),
+    "n_contacts_made": ("1", "contacts at rest that the grain as grown has not"),
+    "n_contacts_lost": ("1", "contacts of the grain as grown that it has not at rest"),
+    "n_parts": ("1", "parts that hang together at rest, 1 for a whole grain"),
+    "moved": ("1", "greatest change of the distance of a monomer from the centre of mass, over the mean radius"),
+    "inertia": ("1", "greatest moment of inertia at rest over that as grown"),
+}
+KIND = table_kind("relaxation", "Grains that come to rest", COLUMNS)
+
+
+def rest(grain, timestep_factor):
+    """What changes in a grain that comes to rest.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    timestep_factor : float
+        f of Eq. 31.
+
+    Returns
+    -------
+    dict
+        Columns from rested to inertia of `COLUMNS`.
+
+    Raises
+    ------
+    RuntimeError
+        If the grain does not come to rest.
+    """
+    state = relax(grain, timestep_factor=timestep_factor)
+    n = state.counter[CONTACTS]
+    pairs = np.column_stack([state.pair_i[:n], state.pair_j[:n]]).astype(np.int64)
+    before, after = ({tuple(sorted(pair)) for pair in each.tolist()} for each in (grain.contacts, pairs))
+    position = monomer_rows(state)[:, X : X + 3]
+    distance = [
+        np.linalg.norm(each - centre_of_mass(each, grain.mass), axis=1)
+        for each in (grain.position, np.ascontiguousarray(position))
+    ]
+    moments = [principal_axes(each, grain.mass, grain.radius)[0].max() for each in (grain.position, position)]
+    return dict(
+        rested=1,
+        n_contacts=len(before),
+        n_contacts_made=len(after - before),
+        n_contacts_lost=len(before - after),
+        n_parts=connected_components(grain.n_monomers, pairs).max() + 1,
+        moved=np.abs(distance[1] - distance[0]).max() / grain.radius.mean(),
+        inertia=moments[1] / moments[0],
+    )
+
+
+def compute(settings, progress=None):
+    """Relax all grains of one material, type and size.
+
+    Parameters
+    ----------
+    settings : dict
+        material, type, a_eff [m], seeds (number), timestep_factor, damped (whether with the damping of the material).
+    progress : callable, optional
+        Called with a sentence for each grain that does not come to rest.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`.
+    """
+    material = get_material(settings["material"])
+    if not settings["damped"]:
+        material = replace(material, viscous_time=0.0)
+    rows = []
+    for seed in range(settings["seeds"]):
+        grain = grow(settings["type"], settings["a_eff"], material, seed)
+        row = dict.fromkeys(COLUMNS, math.nan) | grain_values(grain) | {"viscous_time": material.viscous_time}
+        try:
+            row |= rest(grain, settings["timestep_factor"])
+        except RuntimeError as error:
+            row |= {"rested": 0, "n_contacts": grain.n_contacts}
+            if progress is not None:
+                progress(f"seed {seed}: {error}")
+        rows.append(row)
+    return rows
