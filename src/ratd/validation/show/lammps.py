@@ -214,6 +214,14 @@ def _apart(table):
     ]
 
 
+def _agreement(ratio):
+    """Cells of a row: median and range of thresholds of LAMMPS over those of ratd, and how many are within `GOAL`."""
+    s = median_of(ratio)
+    extremes = f"{np.min(ratio):.2f}–{np.max(ratio):.2f}" if len(ratio) else "–"
+    good = int((np.abs(ratio - 1.0) <= GOAL).sum())
+    return [measured(s["median"], s["error"]), extremes, f"{good} of {len(ratio)}"]
+
+
 def elastic_rolling(table):
     """Driven grains whose contacts roll elastically for ever, beside the same grains with the limit, at a mark.
 
@@ -251,12 +259,7 @@ def _elastic_rolling(table):
     cells = []
     for mark, part in found.groupby("mark", sort=False):
         for name, label in (("with", "with its limit"), ("without", "without")):
-            s = median_of(part[name])
-            good = int((np.abs(part[name] - 1.0) <= GOAL).sum())
-            cells.append(
-                [mark, label, len(part), measured(s["median"], s["error"]),
-                 f"{part[name].min():.2f}–{part[name].max():.2f}", f"{good} of {len(part)}"]
-            )  # fmt: skip
+            cells.append([mark, label, len(part), *_agreement(part[name])])
     if not cells:
         return []
     first = found[found["mark"] == next(iter(MARKS))]
@@ -285,14 +288,11 @@ def tell(table):
                 part = [row for row in found if tuple(row[key] for key in ("start", "code", "type", "mark")) == chosen]
                 ratio = np.array([middle(row["LAMMPS"]) / middle(row["ratd"]) for row in part])
                 bound = [median_of([middle(row[name]) / row["cut_bound"] for row in part]) for name in CODES]
-                s = median_of(ratio)
-                good = np.abs(ratio - 1.0) <= GOAL
-                extremes = f"{np.nanmin(ratio):.2f}–{np.nanmax(ratio):.2f}" if s["n"] else "–"
-                within.setdefault((start, code), []).extend(good[np.isfinite(ratio)].tolist())
+                known = ratio[np.isfinite(ratio)]
+                within.setdefault((start, code), []).extend((np.abs(known - 1.0) <= GOAL).tolist())
                 cells.append(
-                    [start, code, kind, mark, f"{s['n']} of {len(part)}",
-                     *(measured(b["median"], b["error"]) for b in bound),
-                     measured(s["median"], s["error"]), extremes, f"{int(good.sum())} of {s['n']}"]
+                    [start, code, kind, mark, f"{len(known)} of {len(part)}",
+                     *(measured(b["median"], b["error"]) for b in bound), *_agreement(known)]
                 )  # fmt: skip
     how_long = rows.groupby("path")["rotations"].first()
     grains = rows.drop_duplicates(GRAIN)
