@@ -53,6 +53,12 @@ def test_law_and_medians_are_those_of_the_grains(table):
             assert float(peak) == pytest.approx(2 * cell["omega_mass_75"].median() / 1e6, rel=6e-3)
 
 
+def test_star_is_explained_where_there_is_one(table):
+    legend = f"(*: fewer than {SURE} grains)"
+    assert legend in "\n".join(recommended_section(data_of(table)))
+    assert legend not in "\n".join(recommended_section(data_of(table[table["a_eff"] < 400e-9])))
+
+
 def test_cut_bound_is_recommended_where_it_predicts_best(table):
     assert "BA 0.8 and 1.6; BAM1 0.8 and 1.6; BAM2 0.8 and 1.6." in "\n".join(recommended_section(data_of(table)))
     assert "cut bound" not in "\n".join(recommended_section(data_of(table, "power of size")))

@@ -35,15 +35,17 @@ def recommended_section(data):
     table = data.tables.get("prescribed")
     if table is None:
         return []
+    medians = _medians(table)
+    legend = f" (*: fewer than {SURE} grains)" if "*" in medians else ""
     return [
         "For a grain that radiation spins up as a whole take the drive `prescribed`: omega = C sqrt(gamma/(rho a³)) "
         f"(a_eff/a)^-p with a = {SPLIT / NM:g} nm, gamma and rho from Table 2, and",
         _laws(data, table),
         _trust(data, table),
         *_with_a_grain(data, table),
-        f"The median omega of each cell, in 1e6 rad/s, at the {NAMES['omega_mass_75']} and, in brackets, at omega_disr "
-        f"(*: fewer than {SURE} grains):",
-        _medians(table),
+        f"The median omega of each cell, in 1e6 rad/s, at the {NAMES['omega_mass_75']} and, in brackets, at omega_disr"
+        f"{legend}:",
+        medians,
     ]
 
 
