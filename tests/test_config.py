@@ -129,6 +129,11 @@ def test_quick_is_three_of_each():
         ({"figures": {"figure9": {"sizes_nm": [75]}}}, "figures.figure9.sizes_nm[0] is 75", "one of the sizes_nm, 50"),
         ({"figures": {"figure9": {"T_vis_ps": [0]}}}, "figures.figure9.T_vis_ps[0] is 0", "above 0"),
         (
+            {"figures": {"figure9": {"literal": {"sizes_nm": [100, 75]}}}},
+            "figures.figure9.literal.sizes_nm[1] is 75",
+            "one of the sizes_nm, 50",
+        ),
+        (
             {"figures": {"figure9": {"literal": {"timestep_factor": 2}}}},
             "figures.figure9.literal.timestep_factor is 2",
             "at most 1",
@@ -314,6 +319,20 @@ def test_figure9_has_a_pace_of_its_own_for_each_drive():
     names = ("epsilon", "angular_acceleration", "timestep_factor")
     assert [laws["prescribed"][name] for name in names] == [0.03, None, 0.01]
     assert [laws["literal"][name] for name in names] == [None, 3e13, 0.04]
+
+
+def test_figure9_may_have_sizes_of_its_own_for_the_literal_drive():
+    def sizes(literal, drive):
+        own = {"sizes_nm": [100, 150], "literal": literal}
+        plan = with_changes({"drives": ["prescribed", "literal"], "figures": {"figure9": own}})
+        files = plan.parameter_files("{drive} {type} {size} {label}", drive)
+        assert len(files) == len(set(files)) and {file.split()[0] for file in files} == {drive}
+        assert "sizes_nm" not in plan.parameters(drive, "BA", "100")[0]["spin_up"]
+        return list(dict.fromkeys(file.split()[2] for file in files))
+
+    assert sizes({}, "prescribed") == sizes({}, "literal") == ["100", "150"]
+    assert sizes({"sizes_nm": [50]}, "prescribed") == ["100", "150"]
+    assert sizes({"sizes_nm": [50]}, "literal") == ["50"]
 
 
 def test_the_literal_paces_of_the_config_have_one_ratio():

@@ -303,6 +303,8 @@ def check(config, schemas="config/schema"):
             plan.find(own["material"], "materials", f"figures.{name}.material")
             for key in ("types", "sizes_nm"):
                 plan.find_each(own[key], key, f"figures.{name}.{key}")
+    if config["figures"]["figure9"] is not None:
+        plan.find_each(plan.parameter_sizes("literal"), "sizes_nm", "figures.figure9.literal.sizes_nm")
     own = config["figures"]["calibration"]
     if own is not None:
         plan.find_cell(own, "figures.calibration")
@@ -727,13 +729,19 @@ class Plan:
             found.append({"parameter": parameter, "changed": changed, "label": f"{parameter}{label}"})
         return found
 
-    def parameter_files(self, path):
+    def parameter_sizes(self, drive):
+        """Sizes [nm] of the grains of figure 9, those of the drive literal where it has its own."""
+        own = self.config["figures"]["figure9"]
+        return (own["literal"] if drive == "literal" else {}).get("sizes_nm", own["sizes_nm"])
+
+    def parameter_files(self, path, drive):
         """Files of all types, sizes and ways of figure 9.
 
         Parameters
         ----------
         path : str
-            With the fields ``{type}``, ``{size}``, ``{label}``.
+            With the fields ``{drive}``, ``{type}``, ``{size}``, ``{label}``.
+        drive : str
 
         Returns
         -------
@@ -742,9 +750,9 @@ class Plan:
         """
         own = self.config["figures"]["figure9"]
         return [
-            path.format(type=kind, size=size_label(size), label=way["label"])
+            path.format(drive=drive, type=kind, size=size_label(size), label=way["label"])
             for kind in (own["types"] if own else ())
-            for size in own["sizes_nm"]
+            for size in self.parameter_sizes(drive)
             for way in self.parameter_ways
         ]
 
@@ -758,7 +766,8 @@ class Plan:
                 "angular_acceleration": None,
                 "timestep_factor": own["timestep_factor"],
             },
-            "literal": {"epsilon": None, **own["literal"]},
+            "literal": {"epsilon": None}
+            | {name: own["literal"][name] for name in ("angular_acceleration", "timestep_factor")},
         }
         return [
             {

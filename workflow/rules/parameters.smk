@@ -1,17 +1,13 @@
 # Figure 9: rolling displacement and viscous time varied, one job all ways of a type and size.
-PARAMETER_WAYS = [way["label"] for way in PLAN.parameter_ways]
-PARAMETER_FILES = PLAN.parameter_files(
-    "<results>/parameters/{{drive}}/{type}/{size}nm/{label}.nc"
-)
+PARAMETER_WAYS = PLAN.parameter_ways
 
-
-if PARAMETER_FILES:
+if PARAMETER_WAYS:
 
     rule parameters:
         output:
             expand(
                 "<results>/parameters/{{drive}}/{{type}}/{{size}}nm/{label}.nc",
-                label=PARAMETER_WAYS,
+                label=[way["label"] for way in PARAMETER_WAYS],
             ),
         log:
             "<results>/logs/parameters/{drive}/{type}/{size}nm.log",
@@ -33,7 +29,9 @@ if PARAMETER_FILES:
 
     rule parameter_table:
         input:
-            PARAMETER_FILES,
+            lambda w: PLAN.parameter_files(
+                "<results>/parameters/{drive}/{type}/{size}nm/{label}.nc", w.drive
+            ),
         output:
             nc="<results>/parameters/{drive}.nc",
             csv=report(
@@ -54,10 +52,10 @@ if PARAMETER_FILES:
             runtime=30,
         params:
             code=CODE["parameter_table"],
-            settings={
+            settings=lambda w, input: {
                 "parameters": [
-                    PLAN.parameter_ways[k % len(PARAMETER_WAYS)]["parameter"]
-                    for k in range(len(PARAMETER_FILES))
+                    PARAMETER_WAYS[k % len(PARAMETER_WAYS)]["parameter"]
+                    for k in range(len(input))
                 ]
             },
         message:

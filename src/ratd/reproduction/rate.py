@@ -140,7 +140,9 @@ def _shorter_step(data):
     if figure9 is None or rate is None:
         return []
     other = figure9["literal"]
-    if not np.isclose(rate, printed_acceleration(**other), rtol=1e-6, atol=0):
+    if not np.isclose(
+        rate, printed_acceleration(other["angular_acceleration"], other["timestep_factor"]), rtol=1e-6, atol=0
+    ):
         return []
     short = data.parameters["literal"]
     both = same_grains(data.tables["literal"], short[short["parameter"] == AS_IT_IS], ("_long", "_short"))
