@@ -207,6 +207,22 @@ def test_findings_on_fig_9(data, key, ratios, holds):
     assert verdict(data, key) is holds
 
 
+def test_a_trend_of_the_loss_of_mass_with_xi_c_is_told_where_omega_disr_does_not_decide(data):
+    def told(by_mass):
+        table = at_fig_9("rolling", [0.5, 1.0, 1.3, 2.0])
+        data.__dict__["parameters"] = {
+            "prescribed": table.assign(omega_mass_75_ratio=np.tile(by_mass, 4)),
+            "literal": table.assign(omega_mass_75_ratio=1.0),
+        }
+        row = next(row for row in disrupted.rows(data) if row.key == "rolling")
+        assert {own.holds for own in row.answers.values()} == {None}
+        return row.reason
+
+    moves = "The loss of a quarter of the mass, which scatters less, does move (prescribed)."
+    assert moves in told([1.19, 1.2, 1.21, 1.2])
+    assert "does move" not in told([0.99, 1.0, 1.01, 1.0]) and "does move" not in told([0.5, 1.0, 1.3, 2.0])
+
+
 def test_a_setting_that_was_not_run_gives_no_answer(data):
     table = at_fig_9("viscous", [1.0, 1.0, 1.0, 1.0])
     data.__dict__["parameters"] = {"prescribed": table[table["viscous_time"] != PRINTED["viscous"].setting]}

@@ -38,7 +38,7 @@ MAIN = {
     "gain": "BAM2 that gain contacts",
     "more_oblate": "BAM that become oblate",
     "quarter": "a quarter of the mass lost at about omega_disr",
-    "viscous_rise": "more omega_disr with a longer viscous time",
+    "viscous_rise": "more omega_disr with a longer viscous time, however little",
 }
 """Main findings of the paper on the spin-up, by key of `ratd.reproduction.paper.PRINTED`, in a few words."""
 PREDICTED = {name: name for name in PREDICTORS} | {"Eq. 33": "Eq. 33 fitted anew"}
@@ -210,6 +210,10 @@ def _verdicts(rows, drives):
     return [*lines, *_main_findings(rows, drives)]
 
 
+UNSEEN = "seen in none", "not decided, or not seen"
+"""What is said of a finding that no drive shows, after those that one shows."""
+
+
 def _main_findings(rows, drives):
     """A line: in which drives the main findings of the paper are seen."""
     found = {row.key: row.answers for row in rows}
@@ -223,11 +227,12 @@ def _main_findings(rows, drives):
         if seen:
             outcome = "seen with " + " and ".join(seen)
         else:
-            outcome = "seen in none" if all(verdict is False for verdict in verdicts) else "not decided, or not seen"
+            outcome = UNSEEN[0] if all(verdict is False for verdict in verdicts) else UNSEEN[1]
         groups.setdefault(outcome, []).append(words)
     if not groups:
         return []
-    told = "; ".join(f"{outcome}: {', '.join(words)}" for outcome, words in groups.items())
+    ordered = sorted(groups.items(), key=lambda group: UNSEEN.index(group[0]) if group[0] in UNSEEN else -1)
+    told = "; ".join(f"{outcome}: {', '.join(words)}" for outcome, words in ordered)
     return [f"**Its main findings** on the spin-up: {told}. The other rows stand under The spin-up."]
 
 
