@@ -22,6 +22,7 @@ from ratd.spinup import EPSILON, TIMESTEP_FACTOR
 from ratd.statistics import mean_of, median_of
 from ratd.validation import (
     convergence,
+    damping,
     energy,
     energy_step,
     forces,
@@ -37,6 +38,7 @@ from ratd.validation import (
 from ratd.validation import data as kept
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.show import convergence as show_convergence
+from ratd.validation.show import damping as show_damping
 from ratd.validation.show import energy as show_energy
 from ratd.validation.show import energy_step as show_energy_step
 from ratd.validation.show import forces as show_forces
@@ -375,6 +377,66 @@ def test_energy_put_in_is_stored_or_dissipated():
     works(show_energy, rows)
 
 
+@pytest.fixture(scope="module")
+def damped_rows():
+    """A grain with 5 and 9 ps, its damping less and less resolved."""
+    ways = {"implicit": [0.003, 0.03], "explicit": [0.003]}
+    settings = {"material": "a-C", "epsilon": 0.2, "viscous_time_ps": [5, 9], "timestep_factor": ways}
+    return damping.compute(SMALL | settings)
+
+
+def test_damping_is_run_with_every_time_treatment_and_step(damped_rows):
+    table = pd.DataFrame(damped_rows)
+    found = set(table[["damping", "timestep_factor"]].itertuples(index=False, name=None))
+    assert found == {("implicit", 0.003), ("implicit", 0.03), ("explicit", 0.003)} and len(table) == 6
+    assert set(table["viscous_time"]) == {5e-12, 9e-12} and (table["outcome"] == "one contact left").all()
+    text = works(show_damping, damped_rows)
+    assert "1 grain of 60 nm, a-C" in text and "explicit at f = 0.003" in text
+
+
+def test_the_viscous_time_does_more_the_faster_the_spin_up(damped_rows):
+    """Contacts that open slowly do not know the damping."""
+    rates = {"epsilon": [0.02, 0.2], "viscous_time_ps": [5, 9], "timestep_factor": {"explicit": [0.02]}}
+    rows = damping.compute(SMALL | {"material": "a-C"} | rates)
+    assert {row["study"] for row in rows} == {damping.RATE} and len(rows) == 4
+    found = show_damping.rise_by_rate(pd.DataFrame(rows))
+    slow, fast = (found[epsilon]["omega_mass_75"]["median"] - 1.0 for epsilon in (0.02, 0.2))
+    assert 0.0 < slow < 0.5 * fast
+    text = works(show_damping, damped_rows + rows)
+    assert "By the rate, with the damping resolved (explicit, f = 0.02), from 5 to 9 ps." in text
+    assert "By the rate" not in show_damping.tell(pd.DataFrame(damped_rows))
+
+
+def test_implicit_damping_tends_to_the_explicit_one_as_the_step_falls(damped_rows):
+    """What weakens it falls nearly as fast as the step; the marks go with it."""
+    marks = show_damping.over_finest(pd.DataFrame(damped_rows)).set_index(["damping", "timestep_factor"])
+    shift = (marks[["omega_disr", "omega_mass_75"]] - 1.0).abs()
+    assert (shift.loc[("explicit", 0.003)] == 0.0).all()
+    short, long = shift.loc[("implicit", 0.003)], shift.loc[("implicit", 0.03)]
+    assert (short < 0.25 * long).all() and (short < 0.02).all() and (long > 0.03).all()
+
+
+def test_the_rise_with_the_viscous_time_is_taken_grain_by_grain_and_way_by_way(damped_rows):
+    """Three grains whose marks are set by hand; of one, a run breaks down."""
+    rows = [
+        row | {"seed": seed, "omega_disr": level * (1.0 + seed / 100 if row["viscous_time"] > 6e-12 else 1.0)}
+        for seed, level in ((1, 1e8), (2, 7e8), (3, 3e8), (6, 2e8))
+        for row in damped_rows
+    ]
+    for row in rows:
+        if (row["seed"], row["damping"]) == (6, "explicit") and row["viscous_time"] > 6e-12:
+            row |= {"outcome": "failed: it flew", "omega_disr": np.nan}
+    table = pd.DataFrame(rows)
+    rise = show_damping.over_shorter(table, 5e-12)
+    assert len(rise) == 12 and rise["omega_disr"].isna().sum() == 1
+    good = rise.dropna(subset="omega_disr")
+    assert good["omega_disr"].to_numpy() == pytest.approx(1.0 + good["seed"].to_numpy() / 100)
+    resolved = show_damping.resolved_rise(table)["omega_disr"]
+    assert (resolved["n"], resolved["median"]) == (3, pytest.approx(1.02))
+    text = works(show_damping, rows)
+    assert "| BAM2 | explicit | 0.003 | 4 | 1 | 1.02" in text and "so resolved: BAM2 omega_disr 1.02" in text
+
+
 def test_an_elastic_grain_keeps_its_energy_to_second_order_of_the_step():
     rows = energy_step.compute(
         SMALL
@@ -643,8 +705,8 @@ def test_plan_names_every_piece_once():
     plan = Plan(CONFIG)
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
-            "convergence", "pull_off", "literal", "theory", "growth", "energy", "energy_step", "frames", "forces",
-            "lammps", "relaxation",
+            "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
+            "forces", "lammps", "relaxation",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and import_module(f"ratd.validation.{check}").KIND in schema.KINDS

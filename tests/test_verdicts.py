@@ -1,5 +1,6 @@
 """When a printed value or finding counts as held, refuted, or left open: the rows of the document, on made-up data."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -221,6 +222,39 @@ def test_a_trend_of_the_loss_of_mass_with_xi_c_is_told_where_omega_disr_does_not
     moves = "The loss of a quarter of the mass, which scatters less, does move (prescribed)."
     assert moves in told([1.19, 1.2, 1.21, 1.2])
     assert "does move" not in told([0.99, 1.0, 1.01, 1.0]) and "does move" not in told([0.5, 1.0, 1.3, 2.0])
+
+
+def test_the_row_of_the_viscous_time_tells_its_rise_with_the_damping_resolved(data, monkeypatch):
+    runs = [
+        dict(
+            study=study, material="a-C", type=kind, a_eff=100e-9, seed=seed, epsilon=epsilon, damping=damping,
+            timestep_factor=f, viscous_time=time, outcome="one contact left",
+            omega_disr=1e8 * (rise if time > 6e-12 else 1.0), omega_mass_75=2e8,
+        )
+        for kind, seed, time in product(("BA", "BAM2"), (0, 1, 2), (5e-12, 9e-12))
+        for study, epsilon, damping, f, rise in (
+            ("T_vis", 0.02, "explicit", 0.002, 1.02), ("T_vis", 0.02, "explicit", 0.01, 1.01),
+            ("T_vis", 0.02, "implicit", 0.001, 1.3), ("epsilon", 0.1, "explicit", 0.001, 1.2),
+            ("epsilon", 0.01, "explicit", 0.001, 1.04),
+        )
+    ]  # fmt: skip
+    runs = pd.DataFrame(runs)
+    studies = {"damping": runs}
+    monkeypatch.setattr(Data, "study", lambda self, name: studies.get(name))
+    data.__dict__["parameters"] = {"prescribed": at_fig_9("viscous", [1.0, 1.0, 1.0, 1.0])}
+
+    def reason():
+        return next(row for row in disrupted.rows(data) if row.key == "viscous").reason
+
+    assert (
+        "Resolved, with explicit damping and f = 0.002, it is 1.02; (25 % of the mass) 1 (3 grains of 100 nm; "
+        "docs/validation.md, Damping); it goes with the rate: 1.04; (25 % of the mass) 1 at epsilon = 0.01, "
+        "1.2; (25 % of the mass) 1 at epsilon = 0.1. The paper does not say" in reason()
+    )
+    studies["damping"] = runs[runs["study"] == "T_vis"]
+    assert "docs/validation.md, Damping). The paper does not say" in reason()
+    studies.clear()
+    assert "Resolved" not in reason() and "(prescribed). The paper does not say" in reason()
 
 
 def test_a_setting_that_was_not_run_gives_no_answer(data):

@@ -36,7 +36,7 @@ FROM_RESULTS = {
     "formulae/table.nc": FORMULAE,
 }
 """File of a study below the results -> its name here. A study may have been made with another config."""
-STUDIES = ("lammps", "literal", "convergence", "growth")
+STUDIES = ("lammps", "literal", "convergence", "damping", "growth")
 """Checks of the validation that the document takes numbers from."""
 DRAWN_STUDIES = ("lammps", "literal")
 """Those of `STUDIES` that it has a figure of."""

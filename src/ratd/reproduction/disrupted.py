@@ -32,7 +32,7 @@ from ratd.schema import END_REASONS
 from ratd.statistics import mean_of, median_of
 from ratd.tensile import predictions
 from ratd.units import NM
-from ratd.validation.show import convergence, literal
+from ratd.validation.show import convergence, damping, literal
 
 FLAT = 0.25
 """Slope d ln omega/d ln a_eff that counts as none."""
@@ -355,8 +355,32 @@ def _weakened(data):
     steps = ", ".join(f"{step[drive]:g} ({drive})" for drive in data.parameters)
     return (
         "The scheme weakens the damping of the lightest monomers, less so the shorter the step (docs/model.md, The "
-        f"scheme): f = {steps}. The paper does not say how it takes the damping, which its Eq. 29 lacks."
+        f"scheme): f = {steps}. {_resolved(data)}The paper does not say how it takes the damping, which its Eq. 29 "
+        "lacks."
     )
+
+
+def _resolved(data):
+    """A sentence: the rise of Fig. 9 with the damping resolved, from a check of the validation."""
+    table = data.study("damping")
+    if table is None:
+        return ""
+    own = table[table["type"] == "BAM2"]
+    best = _rise_in_words(damping.resolved_rise(own))
+    if not best:
+        return ""
+    f = damping.finest(own)["timestep_factor"].iloc[0]
+    words = (
+        f"Resolved, with explicit damping and f = {f:g}, it is {best} ({plural(own['seed'].nunique(), 'grain')} of "
+        f"{damping.sizes(own)}; docs/validation.md, Damping)"
+    )
+    by_rate = damping.rise_by_rate(own)
+    told = [f"{text} at epsilon = {e:g}" for e, found in by_rate.items() if (text := _rise_in_words(found))]
+    return f"{words}; it goes with the rate: {told[0]}, {told[-1]}. " if len(told) > 1 else f"{words}. "
+
+
+def _rise_in_words(found):
+    return "; ".join(f"{MARK_NAMES[mark]}{with_error(s['median'], s['error'])}" for mark, s in found.items() if s["n"])
 
 
 def pairs(data):

@@ -91,11 +91,29 @@ def compute(settings, progress=None):
     list of dict
         Rows of `COLUMNS`. A run that fails has NaN marks and says so in ``outcome``.
     """
-    material = get_material(settings["material"])
-    grain = grow(settings["type"], settings["a_eff"], material, settings["seed"])
+    grain = grow(settings["type"], settings["a_eff"], get_material(settings["material"]), settings["seed"])
+    return spin_each(grain, cases(settings), progress)
+
+
+def spin_each(grain, found, progress=None):
+    """Spin one grain up in several ways, the fastest first, which says when to give up the others.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    found : list of dict
+        As from `cases`.
+    progress : callable, optional
+        Called with a sentence after each run.
+
+    Returns
+    -------
+    list of dict
+        As from `compute`.
+    """
     work = None  # steps times epsilon times f, the same for all runs that are stable
     rows = []
-    for case in sorted(cases(settings), key=lambda case: -case["epsilon"] * case["timestep_factor"]):
+    for case in sorted(found, key=lambda case: -case["epsilon"] * case["timestep_factor"]):
         rate = case["epsilon"] * case["timestep_factor"]
         max_steps = None if work is None else int(UNSTABLE_STEPS * work / rate)
         row = spin_one(grain, case, max_steps)

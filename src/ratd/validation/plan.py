@@ -65,6 +65,7 @@ class Plan:
         return {
             "convergence": self._convergence,
             "pull_off": self._pull_off,
+            "damping": self._damping,
             "literal": self._literal,
             "theory": self._theory,
             "growth": self._growth,
@@ -102,6 +103,12 @@ class Plan:
     def _pull_off(self, own):
         shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
         return {material: shared | {"material": material} for material in own["materials"]}
+
+    def _damping(self, own):
+        shared = {key: own[key] for key in ("material", "epsilon", "viscous_time_ps", "timestep_factor")}
+        rate = shared | {key: own["rate"][key] for key in ("epsilon", "viscous_time_ps", "timestep_factor")}
+        pieces = _each_grain(own["grains"], shared)
+        return pieces | {f"rate_{name}": piece for name, piece in _each_grain(own["grains"], rate).items()}
 
     def _literal(self, own):
         shared = {key: own[key] for key in ("material", "part_of_limit", "timestep_factor")}

@@ -3,6 +3,7 @@
 from ratd.errors import InputError
 from ratd.validation.show import (
     convergence,
+    damping,
     energy,
     energy_step,
     forces,
@@ -15,7 +16,9 @@ from ratd.validation.show import (
     theory,
 )
 
-MODULES = (convergence, energy, energy_step, forces, frames, growth, lammps, literal, pull_off, relaxation, theory)
+MODULES = (
+    convergence, damping, energy, energy_step, forces, frames, growth, lammps, literal, pull_off, relaxation, theory
+)  # fmt: skip
 SHOWN = {module.__name__.rpartition(".")[2]: module for module in MODULES}
 """Check -> module with its `draw` and `tell`."""
 
