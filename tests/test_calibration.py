@@ -7,7 +7,7 @@ import pytest
 from ratd import io
 from ratd.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table, step_ratios
 from ratd.errors import InputError
-from ratd.figures import calibration
+from ratd.figures import calibration, save
 from ratd.growth import grow
 from ratd.spinup import spin_up
 
@@ -141,3 +141,20 @@ def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
     assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == 2e9
     with pytest.raises(InputError, match="at least one run"):
         calibration(table[:0], fit)
+
+
+def test_the_last_bits_of_the_fit_do_not_show(tmp_path):
+    """Processors differ in them; the fit, a straight line, joins its ends."""
+    table = made_up(0.29, (1.0, 1.1))
+    fit = calibrate(table, 2e5)
+    pictures = set()
+    for bits in range(-8, 9):
+        moved = fit.assign(exponent=fit["exponent"] * (1 + bits * np.finfo(float).eps))
+        figure = calibration(table, moved)
+        save(figure, tmp_path / "a.png")
+        pictures.add((tmp_path / "a.png").read_bytes())
+    assert len(pictures) == 1
+    line = next(line for line in figure.axes[0].get_lines() if line.get_label().startswith("fit"))
+    (low, high), (first, last) = line.get_data()
+    assert low == 1e14 and high == float(fit["calibrated"]) > 1e16 and last == pytest.approx(2e5)
+    assert np.log(last / first) / np.log(high / low) == pytest.approx(0.29)

@@ -56,7 +56,8 @@ def calibration(table, fit):
     axes.axhline(onset, color=GREY, lw=0.8, ls="--", label="onset in Fig. 4 of the paper")
     if np.isfinite(calibrated):
         rates = table["printed_acceleration"]
-        x = np.geomspace(min(calibrated, rates.min()), rates.max(), 50)
+        # Straight in these axes. More points would be thinned out by their last bits, which differ between processors.
+        x = np.array([min(calibrated, rates.min()), max(calibrated, rates.max())])
         axes.plot(x, onset * (x / calibrated) ** exponent, color=LOOK[ONSET]["color"], lw=0.8,
                   label=rf"fit, $(\mathrm{{d}}\omega/\mathrm{{d}}t)^{{{exponent:.2f}}}$")  # fmt: skip
         low, high = float(fit["calibrated_low"]), float(fit["calibrated_high"])
