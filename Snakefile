@@ -9,10 +9,10 @@ from pathlib import Path
 
 from snakemake.utils import min_version
 
-from ratd import jobs
-from ratd.config import check, read_yaml
-from ratd.errors import InputError
-from ratd.partial import tidy
+from ratd.pipeline import jobs
+from ratd.pipeline.config import check, read_yaml
+from ratd.base.errors import InputError
+from ratd.pipeline.partial import tidy
 from ratd.reproduction.collected import Collected
 from ratd.reproduction.data import FOLDER
 from ratd.validation.plan import Plan

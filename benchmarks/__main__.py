@@ -4,11 +4,12 @@ import argparse
 import sys
 from pathlib import Path
 
-from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
-from ratd import config
 from ratd.cuda import device
-from ratd.drives import DRIVES
-from ratd.errors import FileError, InputError
+
+from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
+from ratd.base.errors import FileError, InputError
+from ratd.drives.rotating import DRIVES
+from ratd.pipeline import config
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent

@@ -10,7 +10,7 @@ at other angular velocities.
 
 Under Eq. 24 a grain of the drive literal breaks at an omega that depends on d omega/dt, so that a faster run tells
 little. There a run of `SHORT` steps tells how long a step takes, and theory how many there are: up to the omega at
-which a solid grain parts (`ratd.solid.solid_omega`).
+which a solid grain parts (`ratd.experiments.spin_up.solid.solid_omega`).
 
 Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the error and correct
 the cells that are not run in full.
@@ -25,13 +25,13 @@ import numpy as np
 
 from benchmarks import machine, tables
 from ratd import grow, spin_up
-from ratd.bound import cut_bound
-from ratd.errors import InputError
-from ratd.growth import RadiusDistribution
-from ratd.solid import solid_omega, spin_share
-from ratd.spinup import FIRST_LOSS, relax
-from ratd.units import NM
-from ratd.variations import first_step
+from ratd.aggregates.growth import RadiusDistribution
+from ratd.base.errors import InputError
+from ratd.base.units import NM
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import FIRST_LOSS, relax
+from ratd.experiments.spin_up.solid import solid_omega, spin_share
+from ratd.experiments.spin_up.variations import first_step
 
 FASTER = 3
 """How much faster still the second run of each cell is."""
@@ -49,7 +49,7 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.config.Plan
+    plan : ratd.pipeline.config.Plan
         The config.
     drives : list of str
     coarse : dict of str to int

@@ -5,14 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ratd.bound import cut_bound
-from ratd.drives import Drive, make_drive
+from ratd.drives.rotating import Drive, make_drive
 from ratd.engine.advance import FULL, STEPS_DONE, advance
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, OMEGA, STEPS, TIME
 from ratd.engine.state import State, new_state, with_room
-from ratd.spinup import TIMESTEP_FACTOR, relax
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import TIMESTEP_FACTOR, relax
 
 EPSILON = 1e-9
 """So small that omega stays as it is however long the measurement: ten monomers make a microsecond in a second."""
@@ -24,7 +24,7 @@ class Turning(NamedTuple):
     Attributes
     ----------
     state : ratd.engine.state.State
-    drive : ratd.drives.Drive
+    drive : ratd.drives.rotating.Drive
     omega : float
         Angular velocity at the start [rad/s].
     """

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd import Grain
-from ratd.errors import FileError, InputError
-from ratd.growth import RadiusDistribution, grow_with_radii
+from ratd.aggregates.growth import RadiusDistribution, grow_with_radii
+from ratd.base.errors import FileError, InputError
 
 
 def draw_radii(n, seed):

@@ -8,7 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from ratd.provenance import source_hash, versions
+from ratd.pipeline.provenance import source_hash, versions
 
 
 def processor():
@@ -71,7 +71,7 @@ def peak_memory():
 @cache
 def source():
     """Hash of all source of ratd that decides what a spin-up computes, and so what it costs."""
-    return source_hash(modules=["ratd.spinup", "ratd.growth"])[:12]
+    return source_hash(modules=["ratd.experiments.spin_up.run", "ratd.aggregates.growth"])[:12]
 
 
 def software():

@@ -18,8 +18,8 @@ import yaml
 from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
-from ratd.bound import cut_bound
-from ratd.errors import FileError
+from ratd.base.errors import FileError
+from ratd.experiments.spin_up.bound import cut_bound
 
 DRIVE = "prescribed"
 PARTS = ("config", "profiles", "workflow", "Snakefile")
@@ -33,7 +33,7 @@ def measure(out, plan, *, root, sizes, about, say):
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.config.Plan
+    plan : ratd.pipeline.config.Plan
         The config; its first material and all its types and seeds are made.
     root : pathlib.Path
         Folder of the repository.

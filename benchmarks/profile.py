@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
-from ratd.spinup import FIRST_LOSS
+from ratd.experiments.spin_up.run import FIRST_LOSS
 
 DRIVE = "prescribed"
 EDGES = (0.0, FIRST_LOSS, 1.0, 2.0, np.inf)
@@ -23,7 +23,7 @@ def measure(out, plan, *, sizes, about, say):
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.config.Plan
+    plan : ratd.pipeline.config.Plan
         The config; its first material and first seed are taken.
     sizes : list of str
         Sizes, a subset of those of the plan.

@@ -7,9 +7,9 @@ import pandas as pd
 
 from benchmarks.cost import FASTER, SHORT
 from benchmarks.scaling import LINEAR_FROM, exponent
-from ratd.errors import FileError
-from ratd.figures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
-from ratd.io import atomic
+from ratd.base.errors import FileError
+from ratd.pictures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
+from ratd.pipeline.io import atomic
 
 BLUE, ORANGE = "#0072B2", "#D55E00"
 MATERIAL_MARKERS = "osD^vP"

@@ -2,7 +2,7 @@
 
 import csv
 
-from ratd.io import atomic
+from ratd.pipeline.io import atomic
 
 
 def read(path):

@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from ratd import io, schema
-from ratd.grain import Grain
-from ratd.materials import MATERIALS, equilibrium_compression
+from ratd.aggregates.grain import Grain
+from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.pipeline import io, schema
 
 
 def make_grain(seed=0, n=3, material="q-S"):

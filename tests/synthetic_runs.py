@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ratd.ensemble import eq33
-from ratd.marks import disruption
-from ratd.materials import get_material
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.ensemble import eq33
+from ratd.experiments.spin_up.marks import disruption
 
 CONTACTS = {"BA": lambda n: n - 1, "BAM1": lambda n: 2 * n - 3, "BAM2": lambda n: 3 * n - 6}
 POROSITY = {"BA": 0.75, "BAM1": 0.62, "BAM2": 0.48}

@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 import ratd
-from ratd import _accelerate
+from ratd.base import jit as _accelerate
 
 SOURCE = Path(ratd.__file__).parent
 

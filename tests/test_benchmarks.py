@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from ratd.cuda import device
-from ratd.errors import FileError, InputError
+
+from ratd.base.errors import FileError, InputError
 
 ROOT = Path(__file__).parents[1]
 

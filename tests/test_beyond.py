@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.beyond import (
+from ratd.base.errors import InputError
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.beyond import (
     MONOMER_CLASSES,
     SEPARATE,
     binomial_interval,
@@ -17,9 +19,7 @@ from ratd.beyond import (
     size_law,
     slopes,
 )
-from ratd.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
-from ratd.errors import InputError
-from ratd.materials import get_material
+from ratd.experiments.spin_up.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
 from synthetic_runs import make_table
 
 SIZES = tuple(50e-9 * k for k in range(1, 9))

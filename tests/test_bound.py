@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 import naive_geometry as naive
-from ratd.bound import (
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow, grow_with_radii
+from ratd.base.errors import InputError
+from ratd.base.materials import equilibrium_compression, get_material, pull_off_force
+from ratd.experiments.spin_up.bound import (
     contact_strengths,
     cut_bound,
     least_bridge_cut,
@@ -14,11 +18,7 @@ from ratd.bound import (
     plane_normals,
     tensile_strength_tatsuuma2019,
 )
-from ratd.errors import InputError
-from ratd.grain import Grain
-from ratd.growth import grow, grow_with_radii
-from ratd.materials import equilibrium_compression, get_material, pull_off_force
-from ratd.shape import principal_axes
+from ratd.geometry.shape import principal_axes
 
 
 def small_grain(type, n, seed):

@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd import io
-from ratd.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table, step_ratios
-from ratd.errors import InputError
-from ratd.figures import calibration, save
-from ratd.growth import grow
-from ratd.spinup import spin_up
+from ratd.aggregates.growth import grow
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, calibrate, calibration_table, step_ratios
+from ratd.experiments.spin_up.figures import calibration, save
+from ratd.experiments.spin_up.run import spin_up
+from ratd.pipeline import io
 
 RUNS = {4e16: 0.02, 1e17: 0.05, 3e17: 0.05}
 """d omega/dt -> f. Over the step it is the same for the first two."""

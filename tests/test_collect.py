@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-
-from files import make_run
-from ratd import io
-from ratd.config import load, merge
-from ratd.ensemble import GRAIN_COLUMNS, grain_table, table_dataset
-from ratd.errors import FileError, InputError
-from ratd.fragmentation import FRAGMENT_COLUMNS
-from ratd.materials import MATERIALS
 from ratd.reproduction.collect import Collection
 from ratd.reproduction.collected import AT_REST, Collected
 from ratd.reproduction.kept import read_kept
+
+from files import make_run
+from ratd.base.errors import FileError, InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.ensemble import GRAIN_COLUMNS, grain_table, table_dataset
+from ratd.experiments.spin_up.fragmentation import FRAGMENT_COLUMNS
+from ratd.pipeline import io
+from ratd.pipeline.config import load, merge
 
 ROOT = Path(__file__).parents[1]
 CELL = ("q-S", "BA", "100")

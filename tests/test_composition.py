@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from ratd import composition, io
-from ratd.composition import PRINTED_2, TABLE_1_COLUMNS, TABLE_2_COLUMNS, rounding, table1, table2, tell
+from ratd.experiments.spin_up import composition
+from ratd.experiments.spin_up.composition import (
+    PRINTED_2,
+    TABLE_1_COLUMNS,
+    TABLE_2_COLUMNS,
+    rounding,
+    table1,
+    table2,
+    tell,
+)
+from ratd.pipeline import io
 
 
 @pytest.mark.parametrize(("text", "half"), [("0.27", 0.005), ("169", 0.5), ("1.60", 0.005), ("0.2", 0.05)])

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from ratd.config import check, load, merge, read_yaml, size_label
-from ratd.errors import InputError
-from ratd.materials import MATERIALS
-from ratd.spinup import EPSILON, TIMESTEP_FACTOR
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.pipeline.config import check, load, merge, read_yaml, size_label
 
 ROOT = Path(__file__).parents[1]
 PACE = {"angular_acceleration": 1e15, "timestep_factor": 0.1}

@@ -7,22 +7,22 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.text import Text
-
-from ratd.calibration import CALIBRATION_COLUMNS, calibrate
-from ratd.ensemble import cell_of
-from ratd.figures import calibration
-from ratd.figures.calibration import SPREAD
-from ratd.figures.style import TYPE_MARKER
-from ratd.fragmentation import STAGES
 from ratd.reproduction import figures
 from ratd.reproduction.bounds import ratios, table3_omega
 from ratd.reproduction.captions import CAPTIONS
 from ratd.reproduction.data import DRAWN_STUDIES
-from ratd.statistics import median_of
+from ratd.validation.show import lammps, literal
+
+from ratd.base.statistics import median_of
+from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, calibrate
+from ratd.experiments.spin_up.ensemble import cell_of
+from ratd.experiments.spin_up.figures import calibration
+from ratd.experiments.spin_up.figures.calibration import SPREAD
+from ratd.experiments.spin_up.fragmentation import STAGES
+from ratd.pictures.style import TYPE_MARKER
 from ratd.validation.lammps import COLUMNS as LAMMPS_COLUMNS
 from ratd.validation.lammps import TURNING
 from ratd.validation.literal import COLUMNS as LITERAL_COLUMNS
-from ratd.validation.show import lammps, literal
 from synthetic_runs import make_table
 
 REPORT = Path(__file__).parents[1] / "workflow" / "report"

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ratd.drives import OMEGA_RAT, SOFT_START, angular_velocity, kick_and_drift, make_drive
+from ratd.base.errors import InputError
+from ratd.drives.rotating import OMEGA_RAT, SOFT_START, angular_velocity, kick_and_drift, make_drive
 from ratd.engine import layout
-from ratd.errors import InputError
 
 
 def test_constant_epsilon_law():

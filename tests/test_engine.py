@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 import naive_engine
-from ratd.bound import cut_bound
-from ratd.drives import AT_REST, make_drive
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow
+from ratd.base.materials import MATERIALS
+from ratd.drives.rotating import AT_REST, make_drive
 from ratd.engine import layout
 from ratd.engine.advance import REACHED, STEPS_DONE
 from ratd.engine.contacts import contact_energies
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces, forces_between
 from ratd.engine.measure import dissipated, total_stress
 from ratd.engine.state import contact_blocks, contact_field, monomer_rows
-from ratd.grain import Grain
-from ratd.growth import grow
-from ratd.materials import MATERIALS
-from ratd.spinup import _advance, relax
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import _advance, relax
 from ratd.validation.free_grain import VELOCITY, kinetic_energy, shaken, state_of, with_field
 
 MATERIAL = MATERIALS["q-S"]

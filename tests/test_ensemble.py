@@ -7,7 +7,10 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from ratd.ensemble import (
+from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
+from ratd.base.materials import Material, get_material
+from ratd.experiments.spin_up.ensemble import (
     COLUMNS,
     TABLE_3,
     cell_statistics,
@@ -22,10 +25,7 @@ from ratd.ensemble import (
     table3_dataset,
     table_dataset,
 )
-from ratd.errors import InputError
-from ratd.grain import Grain
-from ratd.marks import VARIABLES, disruption
-from ratd.materials import Material, get_material
+from ratd.experiments.spin_up.marks import VARIABLES, disruption
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 100e-9, 200e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ratd._fastmath import reciprocal, reciprocal_root, rough_reciprocal, rough_reciprocal_root
+from ratd.base.fastmath import reciprocal, reciprocal_root, rough_reciprocal, rough_reciprocal_root
 
 VALUES = np.concatenate([10.0 ** np.random.default_rng(0).uniform(-36, 36, 20000), np.linspace(0.5, 4.0, 20000)])
 

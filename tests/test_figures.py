@@ -19,12 +19,16 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from ratd.bound import tensile_strength_tatsuuma2019
-from ratd.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
-from ratd.errors import InputError
-from ratd.figures import figure2, figure4, figure6, figure7, figure8, figure10, save
-from ratd.figures.figure6 import axis_ratios
-from ratd.figures.style import (
+from ratd.base.errors import InputError
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.bound import tensile_strength_tatsuuma2019
+from ratd.experiments.spin_up.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
+from ratd.experiments.spin_up.figures import figure2, figure4, figure6, figure7, figure8, figure10, save
+from ratd.experiments.spin_up.figures.figure6 import axis_ratios
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.pair import force_controlled_omega
+from ratd.experiments.spin_up.tensile import predictions
+from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,
     TWO_COLUMNS,
@@ -38,10 +42,6 @@ from ratd.figures.style import (
     styled,
     type_style,
 )
-from ratd.marks import disruption
-from ratd.materials import get_material
-from ratd.pair import force_controlled_omega
-from ratd.tensile import predictions
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 75e-9, 100e-9)

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-
-from ratd.beyond import slopes
 from ratd.reproduction import course, disrupted, peak, shapes, structure, summary
 from ratd.reproduction.argument import by_frame_and_type, by_size, rolling_limit
 from ratd.reproduction.bounds import table3_omega
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import Answer, Row
+
+from ratd.experiments.spin_up.beyond import slopes
 from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, TURNING
 from synthetic_runs import make_run, make_table, marked
 

@@ -5,12 +5,12 @@ import pytest
 
 import naive_geometry as naive
 from ratd import disruption, spin_up
-from ratd.bound import cut_bound, plane_normals
-from ratd.firm_bound import bridge_pulls, firm_bound, slide_forces
-from ratd.grain import Grain
-from ratd.growth import grow, grow_with_radii
-from ratd.materials import equilibrium_compression, get_material
-from ratd.shape import principal_axes
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow, grow_with_radii
+from ratd.base.materials import equilibrium_compression, get_material
+from ratd.experiments.spin_up.bound import cut_bound, plane_normals
+from ratd.experiments.spin_up.firm_bound import bridge_pulls, firm_bound, slide_forces
+from ratd.geometry.shape import principal_axes
 
 
 def small_grain(type, n, seed):

@@ -8,21 +8,21 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from ratd import io
-from ratd.config import load
-from ratd.errors import InputError
-from ratd.figures import formulae as figure
-from ratd.formula_table import FORMULA_COLUMNS, FORMULAE, formula_effects, formula_table
-from ratd.formulae import use
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.figures import formulae as figure
+from ratd.experiments.spin_up.formula_table import FORMULA_COLUMNS, FORMULAE, formula_effects, formula_table
+from ratd.experiments.spin_up.formulae import use
+from ratd.pipeline import io
+from ratd.pipeline.config import load
 
 NU = 0.17
 CONSTANTS = """
 import sys
-from ratd.formulae import use
+from ratd.experiments.spin_up.formulae import use
 use(sys.argv[1], 0.17)
 from ratd.engine.layout import INV_ZETA2, K_SLIDE, K_TWIST, PULL_OFF
 from ratd.engine.state import contact_field, new_state
-from ratd.grain import Grain
+from ratd.aggregates.grain import Grain
 grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S")
 state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=0.1)
 print(*(repr(float(contact_field(state, field)[0])) for field in (K_SLIDE, INV_ZETA2, K_TWIST, PULL_OFF)))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ratd import io, schema
-from ratd.errors import InputError
-from ratd.fragmentation import COLUMNS, fragment_table, fragmentation, join
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.fragmentation import COLUMNS, fragment_table, fragmentation, join
+from ratd.pipeline import io, schema
 
 
 def run_and_mark(mass, omega, omega_disr, seed=0):

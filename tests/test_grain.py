@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from ratd.errors import InputError
-from ratd.grain import Grain
-from ratd.materials import Material, equilibrium_compression, get_material
-from ratd.shape import enclosing_radius
+from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
+from ratd.base.materials import Material, equilibrium_compression, get_material
+from ratd.geometry.shape import enclosing_radius
 
 QUARTZ = get_material("q-S")
 DELTA_0 = equilibrium_compression(10e-9, QUARTZ.surface_energy, QUARTZ.reduced_modulus)

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ratd.errors import InputError
-from ratd.figures.grain_page import OPENING, SCRIPT, SPHERES, TEMPLATE, grain_page
-from ratd.figures.snapshots import FARTHEST, force_colours, force_scale, fragment_colours, frames
+from ratd.base.errors import InputError
+from ratd.pictures.grain_page import OPENING, SCRIPT, SPHERES, TEMPLATE, grain_page
+from ratd.pictures.snapshots import FARTHEST, force_colours, force_scale, fragment_colours, frames
 from synthetic_runs import make_run, run_with_snapshots
 
 MARK = xr.Dataset({"omega_disr": 1.02e8})

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import naive_geometry as naive
-from ratd import growth
-from ratd.errors import InputError
-from ratd.grain import gaps
-from ratd.growth import TYPES, RadiusDistribution, draw_radii, grow, grow_with_radii, smallest_a_eff
-from ratd.materials import Material, equilibrium_compression, get_material, reduced_radius
+from ratd.aggregates import growth
+from ratd.aggregates.grain import gaps
+from ratd.aggregates.growth import TYPES, RadiusDistribution, draw_radii, grow, grow_with_radii, smallest_a_eff
+from ratd.base.errors import InputError
+from ratd.base.materials import Material, equilibrium_compression, get_material, reduced_radius
 
 QUARTZ = get_material("q-S")
 CONSTANTS = QUARTZ.surface_energy, QUARTZ.reduced_modulus

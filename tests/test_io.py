@@ -11,11 +11,11 @@ import pytest
 import xarray as xr
 
 from files import grains_file, make_grain, make_run, runs_file
-from ratd import io, schema
-from ratd.ensemble import cell_statistics, fit_ensemble, grain_table, table3_dataset, table_dataset
-from ratd.errors import FileError, InputError
-from ratd.materials import MATERIALS
-from ratd.spinup import spin_up
+from ratd.base.errors import FileError, InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.ensemble import cell_statistics, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.experiments.spin_up.run import spin_up
+from ratd.pipeline import io, schema
 
 HERE = Path(__file__).parent
 
@@ -150,7 +150,7 @@ def test_full_disk_leaves_the_old_file_and_one_sentence(tmp_path):
     source = """
         import resource, signal, sys
         from files import runs_file
-        from ratd.errors import FileError
+        from ratd.base.errors import FileError
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
         try:

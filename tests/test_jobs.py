@@ -11,9 +11,9 @@ from types import SimpleNamespace
 import pytest
 
 from files import make_grain
-from ratd import io, jobs, partial
-from ratd.errors import InputError
-from ratd.materials import MATERIALS
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.pipeline import io, jobs, partial
 
 SCRIPTS = Path(__file__).parents[1] / "workflow" / "scripts"
 SEEDS = [0, 1, 2]
@@ -215,7 +215,7 @@ def start_python(source, *arguments):
 HOLD_LOCK = """
     import logging, sys, time
     from pathlib import Path
-    from ratd.partial import locked
+    from ratd.pipeline.partial import locked
     with locked(sys.argv[1], logging.getLogger()):
         print("ready", flush=True)
         time.sleep(float(sys.argv[2]))
@@ -259,7 +259,7 @@ def test_tidy_removes_partial_results_of_finished_files_only(tmp_path):
 
 LIVE_SNAKEMAKE = """
     import sys, time
-    from ratd.jobs import release_stale_locks
+    from ratd.pipeline.jobs import release_stale_locks
     release_stale_locks(sys.argv[1])
     print("ready", flush=True)
     time.sleep(1000)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ratd.errors import InputError
-from ratd.marks import MARKS, VARIABLES, disruption, running_median
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.marks import MARKS, VARIABLES, disruption, running_median
 from synthetic_runs import make_run
 
 BREAK = 1e8

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from ratd.errors import InputError
-from ratd.materials import (
+from ratd.base.errors import InputError
+from ratd.base.materials import (
     CO_S_FRACTIONS,
     MATERIALS,
     Material,

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import naive_geometry as naive
-from ratd._accelerate import jit
-from ratd.neighbours import close_pairs, connected_components
+from ratd.base.jit import jit
+from ratd.geometry.neighbours import close_pairs, connected_components
 
 
 def spheres(n, extent, seed, shape="box"):

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd import io
-from ratd.figures.figure10 import figure10, relative_error
-from ratd.materials import MATERIALS
-from ratd.pair import PAIR_COLUMNS, force_controlled_omega, holding_omega, pairs
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.figures.figure10 import figure10, relative_error
+from ratd.experiments.spin_up.pair import PAIR_COLUMNS, force_controlled_omega, holding_omega, pairs
+from ratd.pipeline import io
 
 HOW = {"damped": {"epsilon": 0.02, "timestep_factor": 0.05}, "undamped": {"epsilon": 0.05, "timestep_factor": 0.05}}
 

@@ -3,12 +3,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-
-import ratd
-from ratd import spin_up
-from ratd.calibration import PRINTED_STEP
-from ratd.materials import MATERIALS, equilibrium_compression, reduced_radius
-from ratd.pair import eq35_omega, force_controlled_omega
 from ratd.reproduction.pair_test import (
     RATES,
     explicit_over,
@@ -16,6 +10,12 @@ from ratd.reproduction.pair_test import (
     smallest_and_largest,
     with_share_and_step,
 )
+
+import ratd
+from ratd import spin_up
+from ratd.base.materials import MATERIALS, equilibrium_compression, reduced_radius
+from ratd.experiments.spin_up.calibration import PRINTED_STEP
+from ratd.experiments.spin_up.pair import eq35_omega, force_controlled_omega
 
 
 def pairs_of(*radii, material="q-S"):

@@ -7,17 +7,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd import io
-from ratd.config import load
-from ratd.errors import InputError
-from ratd.figures.figure9 import figure9
-from ratd.growth import grow
-from ratd.jobs import Job
-from ratd.marks import disruption
-from ratd.materials import MATERIALS
-from ratd.parameters import PARAMETER_COLUMNS, effect, parameter_table, ways
-from ratd.spinup import spin_up
-from ratd.variations import of_material, spin_up_ways, steps_to, way_material
+from ratd.aggregates.growth import grow
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.figures.figure9 import figure9
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.parameters import PARAMETER_COLUMNS, effect, parameter_table, ways
+from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.variations import of_material, spin_up_ways, steps_to, way_material
+from ratd.pipeline import io
+from ratd.pipeline.config import load
+from ratd.pipeline.jobs import Job
 
 PACE = {"epsilon": 0.2, "timestep_factor": 0.1}
 VALUES = {"xi_c": [0.2e-9, 6.4e-9], "T_vis": [1e-12, 5e-12]}

@@ -9,9 +9,9 @@ import time
 import pytest
 import yaml
 
-from ratd import io
-from ratd.partial import partial_folder
-from ratd.provenance import file_hash
+from ratd.pipeline import io
+from ratd.pipeline.partial import partial_folder
+from ratd.pipeline.provenance import file_hash
 from tiny_pipeline import ROOT, TINY, Pipeline
 
 GRAINS = "results/tiny/grains/q-S/BAM2/50nm/seeds_0-5.nc"

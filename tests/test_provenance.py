@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from ratd.errors import InputError
-from ratd.provenance import (
+from ratd.base.errors import InputError
+from ratd.pipeline.provenance import (
     PLUMBING,
     closure,
     essential_text,
@@ -56,9 +56,9 @@ def test_closure_follows_imports_wherever_they_stand(package):
     ],
 )
 def test_imports_are_found_and_texts_left_out_in_every_kind_of_block(head):
-    source = f"{head}\n    import ratd.units\n"
-    assert imported_modules(source) == {"ratd", "ratd.units"}
-    assert essential_text(f'{head}\n    """Text."""\n    import ratd.units\n') == essential_text(source)
+    source = f"{head}\n    import ratd.base.units\n"
+    assert imported_modules(source) == {"ratd", "ratd.base.units"}
+    assert essential_text(f'{head}\n    """Text."""\n    import ratd.base.units\n') == essential_text(source)
 
 
 def test_closure_follows_relative_imports_and_packages(package):
@@ -125,9 +125,9 @@ def test_text_within_a_string_counts():
 
 
 def test_imported_modules_tells_modules_from_names():
-    found = imported_modules("from ratd.errors import InputError, FileError\nimport numpy\nfrom ratd import units\n")
-    assert found == {"ratd", "ratd.errors", "ratd.units"}
-    assert "ratd.errors.InputError" not in module_files() and "ratd.Errors" not in module_files()
+    found = imported_modules("from ratd.base.errors import InputError, FileError\nimport numpy\nfrom ratd import units\n")
+    assert found == {"ratd", "ratd.base.errors", "ratd.base.units"}
+    assert "ratd.base.errors.InputError" not in module_files() and "ratd.Errors" not in module_files()
 
 
 def test_plumbing_exists():
@@ -137,11 +137,11 @@ def test_plumbing_exists():
 @pytest.mark.parametrize(
     ("script", "contains", "lacks"),
     [
-        ("grow", {"ratd.growth", "ratd.grain", "ratd.shape", "ratd.materials"}, {"ratd.laws", "ratd.spinup"}),
-        ("spin_up", {"ratd.spinup", "ratd.laws.jkr", "ratd.engine"}, {"ratd.growth", "ratd.figures"}),
-        ("disrupt", {"ratd.marks"}, {"ratd.spinup", "ratd.laws", "ratd.figures"}),
-        ("ensemble", {"ratd.ensemble"}, {"ratd.spinup", "ratd.laws", "ratd.figures"}),
-        ("figure7", {"ratd.figures", "ratd.figures.style"}, {"ratd.spinup", "ratd.laws", "ratd.growth"}),
+        ("grow", {"ratd.aggregates.growth", "ratd.aggregates.grain", "ratd.geometry.shape", "ratd.base.materials"}, {"ratd.laws", "ratd.experiments.spin_up.run"}),
+        ("spin_up", {"ratd.experiments.spin_up.run", "ratd.laws.jkr", "ratd.engine"}, {"ratd.aggregates.growth", "ratd.experiments.spin_up.figures"}),
+        ("disrupt", {"ratd.experiments.spin_up.marks"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.experiments.spin_up.figures"}),
+        ("ensemble", {"ratd.experiments.spin_up.ensemble"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.experiments.spin_up.figures"}),
+        ("figure7", {"ratd.experiments.spin_up.figures", "ratd.pictures.style"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.aggregates.growth"}),
     ],
 )
 def test_stages_depend_on_what_they_should(script, contains, lacks):
@@ -153,7 +153,7 @@ def test_stages_depend_on_what_they_should(script, contains, lacks):
 def test_every_script_imports_what_it_hashes():
     # `import ratd` alone would reach the library without being seen
     for script in SCRIPTS.glob("*.py"):
-        assert "ratd.jobs" in imported_modules(script.read_text()), script.name
+        assert "ratd.pipeline.jobs" in imported_modules(script.read_text()), script.name
         assert "import ratd\n" not in script.read_text()
 
 

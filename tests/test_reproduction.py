@@ -10,15 +10,6 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
-
-from ratd import io
-from ratd.bound import midplane_bound
-from ratd.config import load
-from ratd.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
-from ratd.figures import save
-from ratd.formula_table import FORMULAE
-from ratd.growth import grow
-from ratd.materials import MATERIALS
 from ratd.reproduction import disrupted, figures
 from ratd.reproduction.argument import printed_porosity
 from ratd.reproduction.bounds import ratios, same_grains, table3_omega
@@ -27,8 +18,17 @@ from ratd.reproduction.paper import GRAINS, PRINTED
 from ratd.reproduction.rate import _beside_table3, solid_parts, solid_prediction, with_literal_step
 from ratd.reproduction.report import report
 from ratd.reproduction.text import Answer, Row, between, number, over, row_table, with_error
-from ratd.shape import porosity, semi_axes
-from ratd.solid import solid_omega
+
+from ratd.aggregates.growth import grow
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.bound import midplane_bound
+from ratd.experiments.spin_up.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.experiments.spin_up.figures import save
+from ratd.experiments.spin_up.formula_table import FORMULAE
+from ratd.experiments.spin_up.solid import solid_omega
+from ratd.geometry.shape import porosity, semi_axes
+from ratd.pipeline import io
+from ratd.pipeline.config import load
 from ratd.validation import growth
 from ratd.validation.data import kind_of, table_path
 from ratd.validation.literal import COLUMNS as LITERAL_COLUMNS

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numba.core.errors import TypingError
 
-from ratd._accelerate import jit
-from ratd._rows import EIGHT, add_columns, gather_differences, gather_sides
+from ratd.base.jit import jit
+from ratd.base.rows import EIGHT, add_columns, gather_differences, gather_sides
 
 STRIDE = 11
 NUMBERS = [0, 1, 2, 4, 5, 6]

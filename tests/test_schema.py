@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from files import make_grain, make_run
-from ratd import ensemble, io, marks, schema
-from ratd.errors import FileError
-from ratd.materials import MATERIALS
+from ratd.base.errors import FileError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up import ensemble, marks
+from ratd.pipeline import io, schema
 
 SI = {"1", "m", "s", "kg", "kg m2", "kg m-3", "J", "J m-2", "N", "Pa", "rad", "rad s-1", "rad s-2"}
 EVERY_VARIABLE = [(kind, name) for kind, layout in schema.KINDS.items() for name in layout.variables]

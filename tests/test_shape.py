@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import naive_geometry as naive
-from ratd.shape import (
+from ratd.geometry.shape import (
     Shape,
     centre_of_mass,
     enclosing_radius,

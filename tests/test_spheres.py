@@ -6,12 +6,12 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
-from ratd.errors import InputError
-from ratd.figures.figure1 import figure1
-from ratd.figures.figure5 import figure5, nearest_snapshots
-from ratd.figures.snapshots import LARGEST, fragment_colours
-from ratd.figures.spheres import render, scale_length, view_axes
-from ratd.grain import Grain
+from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.figures.figure1 import figure1
+from ratd.experiments.spin_up.figures.figure5 import figure5, nearest_snapshots
+from ratd.pictures.snapshots import LARGEST, fragment_colours
+from ratd.pictures.spheres import render, scale_length, view_axes
 from synthetic_runs import make_run, run_with_snapshots
 
 

@@ -8,13 +8,13 @@ import pytest
 import xarray as xr
 
 import ratd
-from ratd import spinup
+from ratd.aggregates.growth import grow
+from ratd.base.materials import MATERIALS, equilibrium_compression, reduced_radius
 from ratd.engine.layout import COMPRESSION, DT
 from ratd.engine.state import contact_field
-from ratd.growth import grow
-from ratd.materials import MATERIALS, equilibrium_compression, reduced_radius
-from ratd.shape import inertia_tensor
-from ratd.spinup import _edge, relax, spin_up
+from ratd.experiments.spin_up import run as spinup
+from ratd.experiments.spin_up.run import _edge, relax, spin_up
+from ratd.geometry.shape import inertia_tensor
 
 
 def pair(material, a_i, a_j):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from ratd.statistics import (
+from ratd.base.statistics import (
     equal_weights,
     jackknife_error,
     mean_of,

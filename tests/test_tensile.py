@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
-from ratd.bound import midplane_tension, tensile_strength_tatsuuma2019
-from ratd.ensemble import cell_statistics
-from ratd.materials import get_material
-from ratd.tensile import SCALINGS, eq27, fractal_exponent, predictions, tensile_strength_greenberg1995
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.bound import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.experiments.spin_up.ensemble import cell_statistics
+from ratd.experiments.spin_up.tensile import (
+    SCALINGS,
+    eq27,
+    fractal_exponent,
+    predictions,
+    tensile_strength_greenberg1995,
+)
 from synthetic_runs import make_table
 
 

@@ -8,18 +8,30 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from ratd.validation.show import convergence as show_convergence
+from ratd.validation.show import damping as show_damping
+from ratd.validation.show import energy as show_energy
+from ratd.validation.show import energy_step as show_energy_step
+from ratd.validation.show import forces as show_forces
+from ratd.validation.show import frames as show_frames
+from ratd.validation.show import growth as show_growth
+from ratd.validation.show import literal as show_literal
+from ratd.validation.show import pull_off as show_pull_off
+from ratd.validation.show import relaxation as show_relaxation
+from ratd.validation.show import theory as show_theory
+from ratd.validation.show.report import SHOWN, report, section
 from scipy.stats import kstest
 
 import ratd
-from ratd import schema
-from ratd.drives import angular_velocity, make_drive
-from ratd.growth import grow
-from ratd.markdown import markdown_table, measured, measured_range
-from ratd.materials import MATERIALS, equilibrium_compression
-from ratd.provenance import provenance
-from ratd.solid import solid_omega, spin_share, turned_by_spins
-from ratd.spinup import EPSILON, TIMESTEP_FACTOR
-from ratd.statistics import mean_of, median_of
+from ratd.aggregates.growth import grow
+from ratd.base.markdown import markdown_table, measured, measured_range
+from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.base.statistics import mean_of, median_of
+from ratd.drives.rotating import angular_velocity, make_drive
+from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.solid import solid_omega, spin_share, turned_by_spins
+from ratd.pipeline import schema
+from ratd.pipeline.provenance import provenance
 from ratd.validation import (
     convergence,
     damping,
@@ -37,18 +49,6 @@ from ratd.validation import (
 )
 from ratd.validation import data as kept
 from ratd.validation.plan import EXTENTS, Plan
-from ratd.validation.show import convergence as show_convergence
-from ratd.validation.show import damping as show_damping
-from ratd.validation.show import energy as show_energy
-from ratd.validation.show import energy_step as show_energy_step
-from ratd.validation.show import forces as show_forces
-from ratd.validation.show import frames as show_frames
-from ratd.validation.show import growth as show_growth
-from ratd.validation.show import literal as show_literal
-from ratd.validation.show import pull_off as show_pull_off
-from ratd.validation.show import relaxation as show_relaxation
-from ratd.validation.show import theory as show_theory
-from ratd.validation.show.report import SHOWN, report, section
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
 
 ROOT = Path(__file__).parents[1]
@@ -280,7 +280,7 @@ def test_relaxation(tmp_path, monkeypatch):
     text = works(show_relaxation, rows)
     assert "All of them come to rest." in text and "| BAM2 | own | 2 | 0 | 1 | 0 | 0 | 0 | 0.00022 (0.00022) |" in text
 
-    monkeypatch.setattr("ratd.spinup.RELAXATION_LIMIT", 50)
+    monkeypatch.setattr("ratd.experiments.spin_up.run.RELAXATION_LIMIT", 50)
     said = []
     rows = relaxation.compute(settings | {"damped": False}, progress=said.append)
     (restless,) = said

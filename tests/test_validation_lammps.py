@@ -7,23 +7,23 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from ratd.validation.show import lammps as show_lammps
 
 import ratd
-from ratd.bound import cut_bound
-from ratd.engine.layout import DT_DRIFT, VX, WX, X
-from ratd.engine.state import monomer_rows, new_state
-from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, compression_of
-from ratd.materials import (
+from ratd.base.materials import (
     MATERIALS,
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.spinup import relax
+from ratd.engine.layout import DT_DRIFT, VX, WX, X
+from ratd.engine.state import monomer_rows, new_state
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import relax
+from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, compression_of
 from ratd.validation import lammps, peer_lammps
 from ratd.validation.plan import EXTENTS, Plan
-from ratd.validation.show import lammps as show_lammps
 from ratd.validation.tables import read_tables, write_table
 
 CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"

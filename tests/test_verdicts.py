@@ -7,18 +7,18 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-
-from ratd import io
-from ratd.config import load
-from ratd.ensemble import grain_table, table_dataset
-from ratd.figures.figure10 import REFERENCE
 from ratd.reproduction import course, disrupted, grown, shapes
 from ratd.reproduction.data import Data
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import all_of, lies_in, near
-from ratd.schema import END_REASONS
-from ratd.validation.convergence import MARKS
 from ratd.validation.show.convergence import large_shifts, rate_exponent
+
+from ratd.experiments.spin_up.ensemble import grain_table, table_dataset
+from ratd.experiments.spin_up.figures.figure10 import REFERENCE
+from ratd.pipeline import io
+from ratd.pipeline.config import load
+from ratd.pipeline.schema import END_REASONS
+from ratd.validation.convergence import MARKS
 from synthetic_runs import NO_CHECKS, make_run, make_table, marked
 
 ROOT = Path(__file__).parents[1]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from ratd.provenance import file_hash
+from ratd.pipeline.provenance import file_hash
 
 ROOT = Path(__file__).parents[1]
 TINY = {

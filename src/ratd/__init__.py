@@ -10,17 +10,17 @@ from importlib import import_module
 
 # Loaded on first use: drawing a figure must not wait for compiled code, and a source hash must not follow this file.
 _HOME = {
-    "Grain": "grain",
-    "InputError": "errors",
-    "FileError": "errors",
-    "MATERIALS": "materials",
-    "Material": "materials",
-    "cut_bound": "bound",
-    "disruption": "marks",
-    "fit_ensemble": "ensemble",
-    "grow": "growth",
-    "mix": "materials",
-    "spin_up": "spinup",
+    "Grain": "aggregates.grain",
+    "InputError": "base.errors",
+    "FileError": "base.errors",
+    "MATERIALS": "base.materials",
+    "Material": "base.materials",
+    "cut_bound": "experiments.spin_up.bound",
+    "disruption": "experiments.spin_up.marks",
+    "fit_ensemble": "experiments.spin_up.ensemble",
+    "grow": "aggregates.growth",
+    "mix": "base.materials",
+    "spin_up": "experiments.spin_up.run",
 }
 __all__ = sorted(_HOME)
 

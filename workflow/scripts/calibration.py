@@ -1,8 +1,8 @@
 """Tabulate the runs of the calibration and fit the onset of mass loss."""
 
-from ratd import io
-from ratd.calibration import calibrate, calibration_table
-from ratd.jobs import Job
+from ratd.experiments.spin_up.calibration import calibrate, calibration_table
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     table = calibration_table([run for path in snakemake.input for run in io.read_runs(path)])

@@ -1,9 +1,9 @@
 """Draw the calibration of the drive literal."""
 
-from ratd import io
-from ratd.calibration import CALIBRATION_COLUMNS, FIT_VALUES
-from ratd.figures import calibration, save
-from ratd.jobs import Job
+from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES
+from ratd.experiments.spin_up.figures import calibration, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     file = io.read(snakemake.input[0], "calibration")

@@ -1,8 +1,8 @@
 """Tabulate what the monomers are made of: Tables 1 and 2, computed and as printed."""
 
-from ratd import io
-from ratd.composition import table1, table2, tell
-from ratd.jobs import Job
+from ratd.experiments.spin_up.composition import table1, table2, tell
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     for number, table, text in zip((1, 2), (table1(), table2()), tell(), strict=True):

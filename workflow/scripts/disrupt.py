@@ -1,8 +1,8 @@
 """Find where the grains of one material, type and size are disrupted."""
 
-from ratd import io
-from ratd.jobs import Job
-from ratd.marks import disruption
+from ratd.experiments.spin_up.marks import disruption
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     files = [io.read(path, "spinup") for path in snakemake.input]

@@ -1,8 +1,15 @@
 """Tabulate all grains, average them per cell, and fit Eq. 33 beside Table 3."""
 
-from ratd import io
-from ratd.ensemble import cell_statistics, fit_as_configured, grain_table, table3, table3_dataset, table_dataset
-from ratd.jobs import Job
+from ratd.experiments.spin_up.ensemble import (
+    cell_statistics,
+    fit_as_configured,
+    grain_table,
+    table3,
+    table3_dataset,
+    table_dataset,
+)
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     output, settings = snakemake.output, job.settings

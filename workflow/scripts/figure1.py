@@ -1,8 +1,8 @@
 """Draw figure 1."""
 
-from ratd import io
-from ratd.figures import figure1, save
-from ratd.jobs import Job
+from ratd.experiments.spin_up.figures import figure1, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     grains = [grain for path in snakemake.input for grain in io.read_grains(path)]

@@ -1,8 +1,8 @@
 """Draw figure 4."""
 
-from ratd import io
-from ratd.figures import figure4, save
-from ratd.jobs import Job
+from ratd.experiments.spin_up.figures import figure4, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     runs = [run for path in snakemake.input for run in io.read_runs(path)]

@@ -1,8 +1,8 @@
 """Draw figure 6."""
 
-from ratd import io
-from ratd.figures import figure6, save
-from ratd.jobs import Job
+from ratd.experiments.spin_up.figures import figure6, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     table = io.read_table(snakemake.input[0])

@@ -1,9 +1,9 @@
 """Draw figure 7."""
 
-from ratd import io
-from ratd.figures import figure7, save
-from ratd.jobs import Job
-from ratd.materials import Material
+from ratd.base.materials import Material
+from ratd.experiments.spin_up.figures import figure7, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     table = io.read_table(snakemake.input.table)

@@ -1,8 +1,8 @@
 """Draw figure 9."""
 
-from ratd import io
-from ratd.figures import figure9, save
-from ratd.jobs import Job
+from ratd.experiments.spin_up.figures import figure9, save
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     table = io.read(snakemake.input[0], "parameters").to_dataframe()

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from ratd import io
-from ratd.firm_bound import FIRM_BOUND_COLUMNS, firm_bound
-from ratd.jobs import Job
+from ratd.experiments.spin_up.firm_bound import FIRM_BOUND_COLUMNS, firm_bound
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     rows = []

@@ -1,8 +1,8 @@
 """Tabulate grains spun up with single formulae as printed."""
 
-from ratd import io
-from ratd.formula_table import formula_table
-from ratd.jobs import Job
+from ratd.experiments.spin_up.formula_table import formula_table
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     files = list(zip(job.settings["formulae"], map(io.read_marks, snakemake.input), strict=True))

@@ -1,8 +1,8 @@
 """Make the page on which a grain is turned and steps through its disruption."""
 
-from ratd import io
-from ratd.figures.grain_page import grain_page
-from ratd.jobs import Job
+from ratd.pictures.grain_page import grain_page
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     runs = {run.attrs["seed"]: run for run in io.read_runs(snakemake.input[0])}

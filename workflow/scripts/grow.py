@@ -1,10 +1,10 @@
 """Grow the grains of one block."""
 
-from ratd import io
-from ratd.bound import cut_bound
-from ratd.growth import RadiusDistribution, grow
-from ratd.jobs import Job
-from ratd.materials import Material
+from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.base.materials import Material
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     material = Material(**job.settings["material"])

@@ -2,10 +2,10 @@
 
 import pandas as pd
 
-from ratd import io
-from ratd.jobs import Job
-from ratd.materials import Material
-from ratd.pair import pairs
+from ratd.base.materials import Material
+from ratd.experiments.spin_up.pair import pairs
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     settings = dict(job.settings)

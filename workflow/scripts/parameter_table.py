@@ -1,8 +1,8 @@
 """Tabulate the grains of figure 9 beside the same grains with their material as it is."""
 
-from ratd import io
-from ratd.jobs import Job
-from ratd.parameters import parameter_table
+from ratd.experiments.spin_up.parameters import parameter_table
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     files = []

@@ -1,8 +1,8 @@
 """Spin up the grains of one block."""
 
-from ratd import io
-from ratd.jobs import Job
-from ratd.spinup import spin_up
+from ratd.experiments.spin_up.run import spin_up
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     file = io.read(snakemake.input[0], "grains")

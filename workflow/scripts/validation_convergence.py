@@ -1,6 +1,6 @@
 """Spin one grain up with every setting of the convergence study."""
 
-from ratd.jobs import Job
+from ratd.pipeline.jobs import Job
 from ratd.validation.convergence import KIND, compute
 from ratd.validation.tables import write_table
 

@@ -1,6 +1,6 @@
 """Collect the tables that docs/validation.md is written from."""
 
-from ratd.jobs import Job
+from ratd.pipeline.jobs import Job
 from ratd.validation.data import collect, finish
 
 with Job(snakemake) as job:

@@ -1,6 +1,6 @@
 """Compute one piece of the check energy."""
 
-from ratd.jobs import Job
+from ratd.pipeline.jobs import Job
 from ratd.validation.energy import KIND, compute
 from ratd.validation.tables import write_table
 

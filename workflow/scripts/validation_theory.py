@@ -1,6 +1,6 @@
 """Compute one piece of the check theory."""
 
-from ratd.jobs import Job
+from ratd.pipeline.jobs import Job
 from ratd.validation.tables import write_table
 from ratd.validation.theory import KIND, compute
 

@@ -2,8 +2,8 @@
 
 import yaml
 
-from ratd import io
-from ratd.jobs import Job
+from ratd.pipeline import io
+from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:
     io.write_text(snakemake.output[0], yaml.safe_dump(job.settings, sort_keys=False, allow_unicode=True))

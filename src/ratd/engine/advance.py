@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from ratd._accelerate import jit
-from ratd.drives import angular_velocity, kick_and_drift, turn_to_take_out
+from ratd.base.jit import jit
+from ratd.drives.rotating import angular_velocity, kick_and_drift, turn_to_take_out
 from ratd.engine.contacts import append_contact, contact_start, remove_contact, update_contact_rates
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces
 from ratd.engine.fragments import drop_departed, find_fragments
@@ -15,7 +15,7 @@ from ratd.engine.layout import (
 )  # fmt: skip
 from ratd.engine.measure import greatest_residual, total_stress
 from ratd.laws.jkr import COMPRESSION_END
-from ratd.neighbours import close_pairs
+from ratd.geometry.neighbours import close_pairs
 
 REACHED, FEW_CONTACTS, STEPS_DONE, FULL, NOT_FINITE = range(5)
 """Why `advance` returned: omega reached, few contacts left, number of steps reached, no room for a new contact, a
@@ -131,7 +131,7 @@ def advance(state, drive, omega_goal, steps_goal, fewest_contacts, timestep_fact
     ----------
     state : State
         Changed in place. The same sequence of calls gives the same bits.
-    drive : ratd.drives.Drive
+    drive : ratd.drives.rotating.Drive
     omega_goal : float
         Angular velocity [rad/s] at which to return.
     steps_goal : int

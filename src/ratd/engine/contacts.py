@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ratd._accelerate import jit
+from ratd.base.jit import jit
 from ratd.engine.layout import (
     A_I, A_J, BLOCK, COMPRESSION, CONTACTS, DAMPING, DAMPING_RATE, DT, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, INV_AREA,
     INV_DELTA0, INV_MASS, INV_SUM, INV_XI2, INV_ZETA2, K_ROLL, K_SLIDE, K_TWIST, LANES, LOST_CONTACT, LOST_DAMP,
@@ -20,7 +20,7 @@ from ratd.laws.tangential import (
     sliding_stiffness,
     twisting_stiffness,
 )
-from ratd.materials import equilibrium_compression, equilibrium_contact_radius, pull_off_force, reduced_radius
+from ratd.base.materials import equilibrium_compression, equilibrium_contact_radius, pull_off_force, reduced_radius
 
 SURFACE_ENERGY, REDUCED_MODULUS, SHEAR_MODULUS, POISSON, ROLLING_LIMIT, VISCOUS_TIME = range(6)
 _ROW = np.uint64(ROW)

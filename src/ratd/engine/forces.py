@@ -8,9 +8,9 @@ out for blocks without a contact beyond them.
 
 import numpy as np
 
-from ratd._accelerate import jit
-from ratd._fastmath import reciprocal, reciprocal_root
-from ratd._rows import add_columns, gather_differences, gather_sides
+from ratd.base.jit import jit
+from ratd.base.fastmath import reciprocal, reciprocal_root
+from ratd.base.rows import add_columns, gather_differences, gather_sides
 from ratd.engine.contacts import contact_start
 from ratd.engine.layout import (
     A_I, A_J, BLOCK, COMPRESSION, DAMPING, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST,

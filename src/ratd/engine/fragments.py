@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from ratd._accelerate import jit
+from ratd.base.jit import jit
 from ratd.engine.contacts import remove_contact
 from ratd.engine.layout import (
     CONTACTS, DRIVEN, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, OMEGA, RADIUS, ROW, TIME,
     VX, VY, VZ, X, Y, Z,
 )  # fmt: skip
-from ratd.neighbours import connected_components
+from ratd.geometry.neighbours import connected_components
 
 _ROW = np.uint64(ROW)
 

@@ -10,7 +10,7 @@ signed index numba emits a test for a negative one, which keeps the loop from be
 
 import numpy as np
 
-from ratd._rows import EIGHT
+from ratd.base.rows import EIGHT
 
 LANES = 56
 VECTOR = EIGHT

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from ratd._accelerate import jit
+from ratd.base.jit import jit
 from ratd.engine.contacts import contact_energies, contact_start
 from ratd.engine.layout import (
     FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, TORQUE_X, TORQUE_Y, TORQUE_Z,
     CONTACTS, DRIVEN, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, INERTIA, INV_AREA, LARGEST_MONOMERS, LOST_CONTACT, LOST_DAMP,
     LOST_ROLL, LOST_SLIDE, LOST_TWIST, MASS, MONOMERS, NORMAL, OMEGA, RADIUS, ROW, S, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
-from ratd.shape import shape_of
+from ratd.geometry.shape import shape_of
 
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)

@@ -7,8 +7,8 @@ delta/delta_0 = 3 s^4 - 2 s.
 
 import math
 
-from ratd._accelerate import jit
-from ratd._fastmath import rough_reciprocal
+from ratd.base.fastmath import rough_reciprocal
+from ratd.base.jit import jit
 
 S_TOUCH = (2.0 / 3.0) ** (1.0 / 3.0)
 """s where delta = 0: two spheres that just touch jump to this contact radius (x = 0.763, force -8/9 F_C)."""

@@ -9,8 +9,8 @@ Vectors are passed as three numbers each, so that the compiler can treat many co
 
 import math
 
-from ratd._accelerate import jit
-from ratd._fastmath import rough_reciprocal_root
+from ratd.base.fastmath import rough_reciprocal_root
+from ratd.base.jit import jit
 
 TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
 """phi_c [rad], critical twisting angle (Sect. 6 of the paper)."""

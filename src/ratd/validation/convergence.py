@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratd.bound import cut_bound
-from ratd.drives import CONSTANT_EPSILON, SPIN_UP_LAWS
-from ratd.growth import grow
-from ratd.marks import disruption
-from ratd.materials import get_material
-from ratd.spinup import FIRST_LOSS, spin_up
+from ratd.aggregates.growth import grow
+from ratd.base.materials import get_material
+from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.run import FIRST_LOSS, spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
@@ -30,7 +30,7 @@ COLUMNS = {
     "n_contacts": ("1", "contacts at the start"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "steps": ("1", "number of time steps"),
-    **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+    **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
 }
 KIND = table_kind("convergence", "Convergence of the marks of disruption", COLUMNS)
 EPSILON_ALONE = ("epsilon_fine", "epsilon_large")

@@ -7,10 +7,10 @@ shorter and shorter steps; and, as what T_vis does goes with the rate too, at se
 
 from itertools import product
 
-from ratd.drives import CONSTANT_EPSILON, SPIN_UP_LAWS
-from ratd.growth import grow
-from ratd.materials import get_material
-from ratd.units import PS
+from ratd.aggregates.growth import grow
+from ratd.base.materials import get_material
+from ratd.base.units import PS
+from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.validation.convergence import COLUMNS, spin_each
 from ratd.validation.tables import table_kind
 

@@ -9,10 +9,10 @@ import json
 from importlib import import_module
 from pathlib import Path
 
-from ratd import io
-from ratd.errors import FileError
-from ratd.markdown import markdown_table
-from ratd.provenance import file_hash, settings_hash
+from ratd.base.errors import FileError
+from ratd.base.markdown import markdown_table
+from ratd.pipeline import io
+from ratd.pipeline.provenance import file_hash, settings_hash
 from ratd.validation.tables import CASE, read_tables
 
 FOLDER = "docs/validation/data"

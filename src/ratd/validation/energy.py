@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.growth import grow
-from ratd.spinup import spin_up
+from ratd.aggregates.growth import grow
+from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MODES = ("sliding", "rolling", "twisting", "damping", "contact")

@@ -6,10 +6,10 @@ Damping and the limits of sliding and rolling are switched off; twisting stays b
 
 import numpy as np
 
+from ratd.aggregates.growth import grow
 from ratd.engine.layout import CONTACTS, STEPS
 from ratd.engine.measure import dissipated
 from ratd.engine.state import monomer_rows
-from ratd.growth import grow
 from ratd.validation.free_grain import energy_after_step, go_on, kinetic_energy, make_elastic, shaken, turn
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from ratd.drives import AT_REST
+from ratd.aggregates.growth import grow
+from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.drives.rotating import AT_REST
 from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.contacts import contact_energies
 from ratd.engine.layout import (
@@ -25,9 +27,7 @@ from ratd.engine.layout import (
 )
 from ratd.engine.measure import dissipated
 from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
-from ratd.growth import grow
 from ratd.laws.tangential import TWISTING_LIMIT
-from ratd.materials import equilibrium_compression, get_material, reduced_radius
 from ratd.validation.free_grain import SPIN, VELOCITY, go_on, momenta, shaken, with_field
 from ratd.validation.tables import table_kind
 

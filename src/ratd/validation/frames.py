@@ -9,14 +9,14 @@ import math
 
 import numpy as np
 
-from ratd.bound import cut_bound
-from ratd.drives import AT_REST, OMEGA_RAT, angular_velocity, make_drive
+from ratd.aggregates.growth import grow
+from ratd.drives.rotating import AT_REST, OMEGA_RAT, angular_velocity, make_drive
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
 from ratd.engine.measure import dissipated
 from ratd.engine.state import monomer_rows
-from ratd.growth import grow
-from ratd.spinup import relax
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import relax
 from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, go_on, turn
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -54,7 +54,7 @@ def pair_of_states(start, speed, drive, time, timestep_factor, seed):
     Parameters
     ----------
     start : State
-        From `ratd.spinup.relax`.
+        From `ratd.experiments.spin_up.run.relax`.
     speed : float
         Standard deviation of each component of the velocities, and of the spins times the greatest radius [m/s].
     drive : Drive

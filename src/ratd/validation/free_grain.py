@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.drives import AT_REST
+from ratd.drives.rotating import AT_REST
 from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import DAMPING, INERTIA, INV_XI2, INV_ZETA2, LANES, MASS, STEPS, VX, WX, X
@@ -81,7 +81,7 @@ def go_on(state, grain, goal, timestep_factor, drive=AT_REST):
         Total number of steps.
     timestep_factor : float
         f of Eq. 31; damping, if any, is implicit.
-    drive : ratd.drives.Drive
+    drive : ratd.drives.rotating.Drive
         Of the frame; by default one that does not turn.
 
     Raises

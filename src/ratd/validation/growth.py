@@ -9,10 +9,10 @@ to that of a grazing hit.
 
 import numpy as np
 
-from ratd import growth
-from ratd.growth import MIGRATIONS, TYPES, grow, grow_with_radii
-from ratd.materials import equilibrium_compression, get_material, reduced_radius
-from ratd.statistics import rank_correlation
+from ratd.aggregates import growth
+from ratd.aggregates.growth import MIGRATIONS, TYPES, grow, grow_with_radii
+from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.base.statistics import rank_correlation
 from ratd.validation.tables import table_kind
 
 MONOMER_RADIUS = 20e-9
@@ -102,7 +102,7 @@ def compute(settings, progress=None):
     ----------
     settings : dict
         material, and either arrivals (number), or type, seeds (number), and monomers (number) or a_eff [m] with
-        migration (one of `ratd.growth.MIGRATIONS`).
+        migration (one of `ratd.aggregates.growth.MIGRATIONS`).
     progress : callable, optional
         Called with a sentence.
 

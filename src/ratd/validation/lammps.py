@@ -14,17 +14,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratd.bound import cut_bound
-from ratd.drives import AT_REST
+from ratd.aggregates.growth import grow
+from ratd.base.materials import equilibrium_compression, get_material, pull_off_force, reduced_radius
+from ratd.drives.rotating import AT_REST
 from ratd.engine.advance import FULL, advance
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, INERTIA, MASS, RADIUS, STEPS, TIME, VX, VY, WZ, X, Y
 from ratd.engine.state import State, monomer_rows, with_room
-from ratd.growth import grow
+from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.run import relax
+from ratd.geometry.neighbours import connected_components
 from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, S_TOUCH, compression_of, contact_state, normal_force
-from ratd.materials import equilibrium_compression, get_material, pull_off_force, reduced_radius
-from ratd.neighbours import connected_components
-from ratd.spinup import relax
 from ratd.validation import peer_lammps
 from ratd.validation.peer_lammps import Spheres, stable_step
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
@@ -73,7 +73,7 @@ class InRatd:
     Parameters
     ----------
     state : State
-        Of `ratd.spinup.relax`; it is copied.
+        Of `ratd.experiments.spin_up.run.relax`; it is copied.
     timestep_factor : float
         f of Eq. 31.
     """
@@ -135,7 +135,7 @@ class InLammps:
     Parameters
     ----------
     state : State
-        Of `ratd.spinup.relax`.
+        Of `ratd.experiments.spin_up.run.relax`.
     material : ratd.Material
     turning : bool
         Whether it is described in a frame that turns, where `turn` acts on the frame.

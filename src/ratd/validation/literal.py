@@ -3,15 +3,15 @@
 The printed equations leave an aggregate at rest in the inertial frame but for two things (docs/model.md). The printed
 equation of the spins has no Euler term, which acts like an outer torque I_spin d omega/dt, where I_spin is the sum of
 the monomers' own moments of inertia. And an explicit Coriolis term, taken at the velocities half a step before, turns
-the aggregate backwards. `ratd.solid.solid_omega` says where a solid grain parts under both.
+the aggregate backwards. `ratd.experiments.spin_up.solid.solid_omega` says where a solid grain parts under both.
 """
 
 import numpy as np
 
-from ratd.growth import grow
-from ratd.marks import disruption
-from ratd.solid import solid_omega, spin_share, turned_by_spins
-from ratd.spinup import spin_up
+from ratd.aggregates.growth import grow
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.solid import solid_omega, spin_share, turned_by_spins
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
@@ -26,7 +26,7 @@ COLUMNS = {
     "spin_share": ("1", "I_spin/(I_orbit + I_spin) about the axis of rotation"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "omega_end": ("rad s-1", "angular velocity at the end of the run"),
-    **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+    **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
     "turned": ("rad s-1", "greatest angular velocity that its spins give the grain before it loses mass; exact only"),
     "stretched": ("1", "I_1 over that at rest when it turns so fast"),
 }
@@ -113,7 +113,7 @@ def _row(grain, share, **how):
 
 
 def _fastest(run, share, first_loss):
-    """Greatest `ratd.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then.
+    """Greatest `ratd.experiments.spin_up.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then.
 
     NaN where the only record before the loss is that of the grain at rest.
     """

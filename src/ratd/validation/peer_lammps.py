@@ -14,7 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ratd.errors import InputError
+from ratd.base.errors import InputError
+from ratd.base.materials import equilibrium_contact_radius, pull_off_force, reduced_radius
 from ratd.laws.jkr import damping_coefficient
 from ratd.laws.tangential import (
     TWISTING_LIMIT,
@@ -23,7 +24,6 @@ from ratd.laws.tangential import (
     sliding_stiffness,
     twisting_stiffness,
 )
-from ratd.materials import equilibrium_contact_radius, pull_off_force, reduced_radius
 
 DIFFERENCES = (
     "A contact ends at the greatest pull, delta = -0.397 delta_0; in ratd at the end of the branch, -0.8255 delta_0.",

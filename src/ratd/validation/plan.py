@@ -2,9 +2,9 @@
 
 from itertools import product
 
-from ratd.config import read_yaml
-from ratd.errors import InputError
-from ratd.units import NM
+from ratd.base.errors import InputError
+from ratd.base.units import NM
+from ratd.pipeline.config import read_yaml
 from ratd.validation import peer_lammps
 
 EXTENTS = ("full", "quick")

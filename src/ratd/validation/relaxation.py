@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ratd.aggregates.growth import grow
+from ratd.base.materials import get_material
 from ratd.engine.layout import CONTACTS, X
 from ratd.engine.state import monomer_rows
-from ratd.growth import grow
-from ratd.materials import get_material
-from ratd.neighbours import connected_components
-from ratd.shape import centre_of_mass, principal_axes
-from ratd.spinup import relax
+from ratd.experiments.spin_up.run import relax
+from ratd.geometry.neighbours import connected_components
+from ratd.geometry.shape import centre_of_mass, principal_axes
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 COLUMNS = {

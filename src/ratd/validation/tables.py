@@ -3,8 +3,8 @@
 import pandas as pd
 import xarray as xr
 
-from ratd import io, schema
-from ratd.errors import InputError
+from ratd.base.errors import InputError
+from ratd.pipeline import io, schema
 
 CASE = "case"
 """Dimension along which the cases of a file stand."""
@@ -39,7 +39,7 @@ def grain_values(grain):
 
 
 def table_kind(name, title, columns):
-    """Make a kind of file known to `ratd.schema`, with a variable a column.
+    """Make a kind of file known to `ratd.pipeline.schema`, with a variable a column.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def write_table(path, rows, kind, provenance):
     kind : str
         From `table_kind`.
     provenance : dict
-        Global attributes, from `ratd.provenance.provenance`.
+        Global attributes, from `ratd.pipeline.provenance.provenance`.
 
     Raises
     ------

@@ -2,10 +2,10 @@
 
 import math
 
-from ratd.bound import cut_bound, midplane_bound
-from ratd.growth import grow
-from ratd.marks import disruption
-from ratd.spinup import spin_up
+from ratd.aggregates.growth import grow
+from ratd.experiments.spin_up.bound import cut_bound, midplane_bound
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
@@ -16,7 +16,7 @@ COLUMNS = {
     "porosity": ("1", "porosity"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "midplane": ("rad s-1", "omega at which the mean tension at the mid-plane is the strength of Tatsuuma 2019"),
-    **{name: ("rad s-1", f"mark {name} of ratd.marks") for name in MARKS},
+    **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
 }
 KIND = table_kind("theory", "Disruption against bound and tensile strength", COLUMNS)
 

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from ratd.drives import angular_velocity, make_drive
+from ratd.base.materials import equilibrium_compression, pull_off_force, reduced_radius
+from ratd.drives.rotating import angular_velocity, make_drive
+from ratd.experiments.spin_up.pair import holding_omega
 from ratd.laws.jkr import (
     COMPRESSION_END,
     S_END,
@@ -22,8 +24,6 @@ from ratd.laws.jkr import (
     normal_force,
     normal_potential,
 )
-from ratd.materials import equilibrium_compression, pull_off_force, reduced_radius
-from ratd.pair import holding_omega
 
 S_GREATEST = 5.0
 """Above any s = sqrt(r/r0) that a pair from first touch reaches."""

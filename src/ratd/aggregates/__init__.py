@@ -1,0 +1,1 @@
+"""Aggregates at rest: what they are, and how they grow."""

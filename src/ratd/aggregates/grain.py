@@ -1,0 +1,203 @@
+"""The aggregate that everything else works on."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.base.jit import jit
+from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.geometry.neighbours import close_pairs, connected_components
+from ratd.geometry.shape import Shape
+
+__all__ = ["GAP_TOLERANCE", "OVERLAP_TOLERANCE", "Grain", "gaps"]
+
+GAP_TOLERANCE = 0.1
+"""Two monomers touch where the gap between them is less than this many equilibrium compressions."""
+
+OVERLAP_TOLERANCE = 3.0
+"""Two monomers may overlap by no more than this many equilibrium compressions."""
+
+
+@jit
+def gaps(position, radius, pairs, surface_energy, reduced_modulus):
+    """Gaps between the surfaces of pairs of monomers in units of their equilibrium compression.
+
+    Parameters
+    ----------
+    position : (n, 3) float64 array
+        Centres [m].
+    radius : (n,) float64 array
+        Radii [m].
+    pairs : (k, 2) int64 array
+        Pairs.
+    surface_energy, reduced_modulus : float
+        gamma [J m-2] and E* [Pa].
+
+    Returns
+    -------
+    (k,) float64 array
+        -delta/delta_0 [1]: -1 in equilibrium, 0 at first touch, above 0 where they are apart.
+    """
+    gap = np.empty(pairs.shape[0])
+    for p in range(pairs.shape[0]):
+        i = pairs[p, 0]
+        j = pairs[p, 1]
+        dx = position[i, 0] - position[j, 0]
+        dy = position[i, 1] - position[j, 1]
+        dz = position[i, 2] - position[j, 2]
+        delta_0 = equilibrium_compression(reduced_radius(radius[i], radius[j]), surface_energy, reduced_modulus)
+        gap[p] = (math.sqrt(dx * dx + dy * dy + dz * dz) - radius[i] - radius[j]) / delta_0
+    return gap
+
+
+class Grain:
+    """An aggregate of spherical monomers at rest.
+
+    Parameters
+    ----------
+    position : (n, 3) array_like
+        Centres of the monomers [m].
+    radius : (n,) array_like
+        Radii [m].
+    material : str or Material
+        What the monomers are made of.
+    type : str, optional
+        "BA", "BAM1", "BAM2" or a name of your own.
+    a_eff : float, optional
+        Effective radius that was asked for [m]; must agree with the radii to 1e-9.
+    seed : int, optional
+        Seed that the grain was grown from.
+
+    Attributes
+    ----------
+    position : (n, 3) float64 array
+        Centres [m], C-contiguous, a copy.
+    radius : (n,) float64 array
+        Radii [m], a copy. A grain is not meant to change: make a new one instead of writing into its arrays.
+    material : Material
+    type, seed
+        As given.
+    a_eff : float
+        Effective radius as given, else `effective_radius` [m].
+
+    Raises
+    ------
+    InputError
+        If the arrays do not fit together, hold fewer than two monomers, NaN or infinite values or radii that are not
+        positive; if two monomers overlap by more than three equilibrium compressions; if the aggregate is in more
+        than one piece (a gap of less than 0.1 equilibrium compressions counts as touching).
+
+    Examples
+    --------
+    >>> grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S")
+    >>> grain.n_contacts
+    1
+    """
+
+    def __init__(self, position, radius, material, *, type=None, a_eff=None, seed=None):
+        self.position = _float_array(position, "position")
+        self.radius = _float_array(radius, "radius")
+        self.material = get_material(material)
+        self.type = type
+        self.seed = seed
+        self._check_arrays()
+        self._check_overlap()
+        self._check_one_piece()
+        self.a_eff = self.effective_radius if a_eff is None else float(a_eff)
+        if not abs(self.a_eff / self.effective_radius - 1.0) <= 1e-9:
+            raise InputError(
+                f"a_eff is {self.a_eff:g} m, but the radii give {self.effective_radius:g} m; leave a_eff out, or give "
+                "the cube root of the sum of the cubed radii."
+            )
+
+    def _check_arrays(self):
+        position, radius = self.position, self.radius
+        if radius.ndim != 1 or position.shape != (len(radius), 3):
+            raise InputError(
+                f"position has shape {position.shape} and radius {radius.shape}; they must be (n, 3) and (n,)."
+            )
+        if len(radius) < 2:
+            raise InputError(f"The aggregate has {len(radius)} monomers; it needs at least 2.")
+        for name, array in (("position", position), ("radius", radius)):
+            wrong = np.flatnonzero(~np.isfinite(array.reshape(len(radius), -1)).all(axis=1))
+            if len(wrong):
+                raise InputError(f"{name}[{wrong[0]}] is {array[wrong[0]]}; every {name} must be a finite number in m.")
+        wrong = np.flatnonzero(radius <= 0.0)
+        if len(wrong):
+            raise InputError(f"radius[{wrong[0]}] is {radius[wrong[0]]:g}; every radius must be above 0 (in m).")
+
+    def _gaps(self, pairs):
+        return gaps(self.position, self.radius, pairs, self.material.surface_energy, self.material.reduced_modulus)
+
+    def _check_overlap(self):
+        gap = self._gaps(self.contacts)
+        if np.any(gap < -OVERLAP_TOLERANCE):
+            worst = int(np.argmin(gap))
+            i, j = self.contacts[worst]
+            raise InputError(
+                f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions; at most "
+                f"{OVERLAP_TOLERANCE:g} are allowed."
+            )
+
+    def _check_one_piece(self):
+        pieces = int(connected_components(self.n_monomers, self.contacts).max()) + 1
+        if pieces > 1:
+            raise InputError(
+                f"The aggregate is in {pieces} pieces; it must be in one, where monomers touch if the gap between them "
+                f"is less than {GAP_TOLERANCE:g} equilibrium compressions."
+            )
+
+    @property
+    def n_monomers(self):
+        """Number of monomers."""
+        return len(self.radius)
+
+    @cached_property
+    def mass(self):
+        """Masses of the monomers [kg], (n,): 4/3 pi rho a^3."""
+        return 4.0 / 3.0 * math.pi * self.material.density * self.radius**3
+
+    @cached_property
+    def effective_radius(self):
+        """Radius of the sphere of the same volume, (sum a^3)^(1/3) [m] (Eq. 2)."""
+        return math.fsum(self.radius**3) ** (1.0 / 3.0)
+
+    @cached_property
+    def contacts(self):
+        """Pairs of monomers that touch, (k, 2) int64, i < j, sorted: gap less than 0.1 equilibrium compressions."""
+        material = self.material
+        largest = float(np.max(self.radius))
+        widest = equilibrium_compression(0.5 * largest, material.surface_energy, material.reduced_modulus)
+        near = close_pairs(self.position, self.radius, GAP_TOLERANCE * widest)
+        return near[self._gaps(near) < GAP_TOLERANCE]
+
+    @property
+    def n_contacts(self):
+        """Number of contacts N_con."""
+        return len(self.contacts)
+
+    @property
+    def enclosing_radius(self):
+        """Radius of the smallest sphere around the aggregate [m], a_out of Fig. 1."""
+        return self.shape.enclosing_radius
+
+    @cached_property
+    def shape(self):
+        """Moments of inertia, axes, porosity, fractal dimension (`ratd.geometry.shape.Shape`)."""
+        return Shape.measure(self.position, self.radius, self.material.density, self.n_contacts)
+
+    def __repr__(self):
+        return (
+            f"Grain(type={self.type!r}, material={self.material.name!r}, a_eff={self.a_eff:.4g} m, seed={self.seed!r}, "
+            f"n_monomers={self.n_monomers}, n_contacts={self.n_contacts})"
+        )
+
+
+def _float_array(values, name):
+    """A contiguous float64 copy, or one clear sentence."""
+    try:
+        return np.array(values, dtype=np.float64, order="C")
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is not an array of numbers; it must hold finite numbers in m.") from None

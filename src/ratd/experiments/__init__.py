@@ -1,0 +1,1 @@
+"""What is done with aggregates; experiments do not import each other."""

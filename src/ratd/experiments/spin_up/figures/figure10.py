@@ -1,0 +1,96 @@
+"""Fig. 10: the angular velocity at which two monomers part, against two references."""
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ratd.base.errors import InputError
+from ratd.base.markdown import plural
+from ratd.experiments.spin_up.ensemble import sort_cells
+from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
+
+PAPER_ERROR = 0.018
+"""Greatest error that the paper finds against Eq. 35 (Appendix A)."""
+LOOK = {
+    "damped": {"color": "#0072B2", "marker": "o", "ms": 3.0},
+    "undamped": {"color": "#D55E00", "marker": "s", "ms": 3.0, "mfc": "white"},
+}
+REFERENCE = {"damped": "force_controlled_omega", "undamped": "eq35_omega"}
+"""Start -> the column of its reference."""
+
+
+def relative_error(table):
+    """(reference - simulated)/reference of each pair, the reference being that of its start."""
+    reference = np.select(
+        [table["start"] == start for start in REFERENCE], [table[name] for name in REFERENCE.values()]
+    )
+    return 1.0 - table["parting_omega"].to_numpy(float) / reference
+
+
+@styled
+def figure10(table):
+    """omega of parting against radius, a column a material, and the relative error below (Fig. 10).
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Columns of `ratd.experiments.spin_up.pair.PAIR_COLUMNS`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The materials stand in the paper's order.
+
+    Raises
+    ------
+    InputError
+        If there is no pair.
+
+    References
+    ----------
+    Reissl et al. (2024), A&A 692, A60, Fig. 10, Eq. 35.
+    """
+    if not len(table):
+        raise InputError("figure10: give at least one pair")
+    table = table.assign(error=100 * relative_error(table))
+    names = list(sort_cells(table[["material"]].drop_duplicates())["material"])
+    pairs = plural(table["monomer_radius"].nunique(), "pair")
+    how = [
+        rf"{start} $\epsilon$ = {part['epsilon'].iloc[0]:g}, f = {part['timestep_factor'].iloc[0]:g}"
+        for start, part in table.groupby("start", sort=False)
+    ]
+    wide = len(names) > 1
+    of_each = " of each material" if wide else ""
+    title = (", " if wide else "\n").join([f"{pairs} of equal monomers{of_each}, drive: prescribed", *how])
+    figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.6 * TWO_COLUMNS, title)
+    panels = figure.subplots(2, len(names), sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1])
+    for (top, bottom), name in zip(panels.T, names, strict=True):
+        here = table[table["material"] == name].sort_values("monomer_radius")
+        radius = nanometres(here["monomer_radius"])
+        top.set_title(name)
+        top.plot(radius, here["force_controlled_omega"], color="black", lw=0.8)
+        top.plot(radius, here["eq35_omega"], color=GREY, lw=0.8, ls="--")
+        for start, look in LOOK.items():
+            part = here[here["start"] == start]
+            x = nanometres(part["monomer_radius"])
+            top.plot(x, part["parting_omega"], ls="none", mew=0.6, **look)
+            bottom.plot(x, part["error"], ls="none", mew=0.6, **look)
+        lost = int(here["parting_omega"].isna().sum())
+        if lost:
+            top.text(0.97, 0.95, f"never parted: {lost}", transform=top.transAxes, ha="right", va="top")
+        bottom.axhline(0.0, color="black", lw=0.6)
+        for sign in (-1, 1):
+            bottom.axhline(100 * sign * PAPER_ERROR, color=GREY, lw=0.6, ls=(0, (3, 2)))
+        bottom.set_xlabel("radius of both monomers [nm]")
+    top.set_yscale("log")
+    logarithmic(panels[0, 0].yaxis)
+    limit = 1.15 * max(100 * PAPER_ERROR, np.nanmax(np.abs(table["error"]), initial=0.0))
+    panels[1, 0].set_ylim(-limit, limit)
+    panels[0, 0].set_ylabel(r"$\omega$ of parting [rad s$^{-1}$]")
+    panels[1, 0].set_ylabel("error [%]")
+    handles = [Line2D([], [], ls="none", label=f"{start} pairs", mew=0.6, **look) for start, look in LOOK.items()]
+    handles += [
+        Line2D([], [], color="black", lw=0.8, label=r"slow load, $\sqrt{3\pi\gamma/2m}$"),
+        Line2D([], [], color=GREY, lw=0.8, ls="--", label=r"Eq. 35, $\sqrt{5\pi\gamma/6m}$"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4 if wide else 2)
+    return figure

@@ -1,0 +1,72 @@
+"""Fig. 2: what the grown grains are like."""
+
+from ratd.base.markdown import plural
+from ratd.experiments.spin_up.ensemble import cell_statistics
+from ratd.pictures.style import (
+    TWO_COLUMNS,
+    drive_of,
+    drive_text,
+    empty,
+    logarithmic,
+    mean_and_range,
+    nanometres,
+    new_figure,
+    offsets,
+    size_limits,
+    sizes_label,
+    styled,
+    type_style,
+)
+
+PANELS = (
+    ("n_monomers", r"number of monomers $N_\mathrm{mon}$", "log"),
+    ("n_contacts", r"number of contacts $N_\mathrm{con}$", "log"),
+    ("porosity", r"porosity $\mathcal{P}$", "linear"),
+    ("fractal_dimension", r"fractal dimension $D_\mathrm{f}$", "linear"),
+)
+
+
+@styled
+def figure2(table, drive=None):
+    """Number of monomers and contacts, porosity and fractal dimension against size (Fig. 2).
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+    drive : str, optional
+        Named in the title; default: what the table says. The grown grains do not depend on it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Means over seeds and materials as markers, minima to maxima as bars; the types are shifted a little.
+
+    References
+    ----------
+    Reissl et al. (2024), A&A 692, A60, Fig. 2.
+    """
+    drive = drive_of(table) if drive is None else drive
+    grains, materials = plural(len(table), "grain"), plural(table["material"].nunique(), "material")
+    known = f" ({drive_text(drive)})" if drive else ""
+    figure = new_figure(TWO_COLUMNS, 0.68 * TWO_COLUMNS, f"{grains} of {materials} as grown, at rest{known}")
+    panels = figure.subplots(2, 2, sharex=True)
+    cells = cell_statistics(table, by=("type", "a_eff"))
+    style = type_style(cells["type"])
+    shifts = dict(zip(style, offsets(cells["a_eff"], len(style)), strict=True)) if len(cells) else {}
+    for axes, (name, label, scale) in zip(panels.flat, PANELS, strict=True):
+        axes.set_yscale(scale)
+        axes.set_ylabel(label)
+        for kind, look in style.items():
+            here = cells[cells["type"] == kind]
+            mean_and_range(axes, nanometres(here["a_eff"] + shifts[kind]), here, name, look, label=kind)
+        if not cells[f"{name}_count"].any():
+            empty(axes, "no values")
+        if scale == "log":
+            logarithmic(axes.yaxis)
+    if len(cells):
+        panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
+        panels[0, 0].legend(loc="upper left")
+    for axes in panels[1]:
+        axes.set_xlabel(sizes_label())
+    return figure

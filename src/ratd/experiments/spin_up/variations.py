@@ -1,0 +1,105 @@
+"""The same grains spun up in several ways: with other constants of the material, at another rate or step.
+
+A grain compared with itself has no scatter from its form, so that few grains show what a setting does. Each way is a
+file of its own, like one of the ensemble, and all files of a job are made together, grain by grain.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.base.materials import Material
+from ratd.engine.layout import DT
+from ratd.engine.state import new_state
+from ratd.experiments.spin_up.run import spin_up
+from ratd.pipeline.partial import Block
+
+__all__ = ["first_step", "of_material", "spin_up_ways", "steps_to", "way_material"]
+
+
+def of_material(grain, **changed):
+    """The same grain with other constants of its material.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    **changed
+        Attributes of `ratd.Material`.
+
+    Returns
+    -------
+    ratd.Grain
+        Monomers, type and seed are those of the grain, which does not grow anew.
+    """
+    material = replace(grain.material, **changed)
+    return Grain(grain.position, grain.radius, material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+
+
+def way_material(way):
+    """Material of the spun-up grains of a way, see `spin_up_ways`."""
+    return replace(Material(**way["grain"]["material"]), **way["changed"])
+
+
+def first_step(grain, timestep_factor):
+    """Time step [s] with which a spin-up of a grain as grown begins, by Eq. 31."""
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
+    return float(state.scalar[DT])
+
+
+def steps_to(grain, reach, angular_acceleration, timestep_factor):
+    """Number of steps dt in which Eq. 24 takes a grain to omega = reach (d omega/dt / dt)^(1/3), dt being the first.
+
+    With the drive literal grains come apart at a certain `reach` (docs/model.md, The two drives).
+    """
+    dt = first_step(grain, timestep_factor)
+    return int(reach * (angular_acceleration / dt) ** (1.0 / 3.0) / angular_acceleration / dt)
+
+
+def spin_up_ways(job, targets, ways, kind, row):
+    """Write a file for each way in which the same grains are spun up; a killed job goes on where it was.
+
+    Parameters
+    ----------
+    job : ratd.pipeline.jobs.Job
+    targets : list of path-like
+        The files.
+    ways : list of dict
+        One a file: ``grain`` (material, type, a_eff, radii, migration, from `ratd.pipeline.config.Plan.grow`), ``changed``
+        (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments of
+        `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
+    kind : str
+        Kind of the files, a key of `ratd.pipeline.schema.KINDS`.
+    row : callable
+        Makes the row of a grain in such a file from the run that `ratd.spin_up` returns.
+    """
+    of_target = dict(zip(map(str, targets), ways, strict=True))
+    blocks = [
+        Block(Path(target), way_material(way), way["seeds"], job.provenance_of(way, []))
+        for target, way in of_target.items()
+    ]
+
+    def make(waiting, done):
+        for number, (block, seed) in enumerate(waiting):
+            way = of_target[str(block.target)]
+            grain = of_material(_grown(way["grain"], seed), **way["changed"])
+            how = way["spin_up"]
+            if "reach" in way:
+                acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
+                how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
+            progress = job.progress(seed, f"{block.target.stem} ")
+            done(number, row(spin_up(grain, checkpoint=block.checkpoint(seed), progress=progress, **how)))
+
+    job.blocks(blocks, kind, make)
+
+
+def _grown(settings, seed):
+    """The grain of a seed, as the ensemble has it."""
+    return grow(
+        settings["type"],
+        settings["a_eff"],
+        Material(**settings["material"]),
+        seed,
+        distribution=RadiusDistribution(**settings["radii"]),
+        migration=settings["migration"],
+    )

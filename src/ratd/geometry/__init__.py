@@ -1,0 +1,1 @@
+"""Space: neighbours, shapes, boxes."""

@@ -1,0 +1,1 @@
+"""What figures share: style, spheres, snapshots, the page in three dimensions."""

@@ -1,0 +1,107 @@
+"""What all pictures of a grain coming apart share: where its monomers are at a snapshot, and their colours."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import Normalize, to_rgb
+
+from ratd.base.errors import InputError
+from ratd.base.units import NM
+from ratd.pictures.style import drive_of, drive_text
+
+LARGEST = "#0072B2"
+OTHERS = ("#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
+"""Colours of the fragments, told apart with any colour vision; the largest is blue as in the paper."""
+FORCES = colormaps["PuOr"]
+"""Orange pulls, purple pushes (the paper: red and green)."""
+CROWDED = 0.98
+"""Part of the forces that the scale of colours covers; the few above have the colour of its end."""
+FARTHEST = 2.0
+"""Half width of the pictures in the greatest distance of a monomer in the first one; what flew farther is not shown."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The monomers that have not been dropped, at one snapshot.
+
+    Attributes
+    ----------
+    position : (n, 3) numpy.ndarray
+        In the turning frame, about the centre of mass of the largest fragment [m].
+    radius : (n,) numpy.ndarray
+        Radii [m].
+    fragment : (n,) numpy.ndarray of int
+        0 the largest, 1, 2, ... others.
+    force : (n,) numpy.ndarray
+        Normal force of greatest magnitude on each, > 0 pushing, 0 where there is no contact [N].
+    """
+
+    position: np.ndarray
+    radius: np.ndarray
+    fragment: np.ndarray
+    force: np.ndarray
+
+    @property
+    def largest(self):
+        """Which monomers belong to the largest fragment, (n,) numpy.ndarray of bool."""
+        return self.fragment == 0
+
+
+def need_snapshots(run, name):
+    """Raise an InputError that names the picture if a run has no snapshots."""
+    if "snapshot_omega" not in run or not run.sizes.get("snapshot", 0):
+        raise InputError(f"{name}: the run has no snapshots; set snapshots in the config, or snapshot_every")
+
+
+def frames(run, chosen=None):
+    """Monomers of a run at its snapshots.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A spin-up run with snapshots, see `ratd.spin_up`.
+    chosen : iterable of int, optional
+        Numbers of the snapshots; default all.
+
+    Returns
+    -------
+    list of Frame
+    """
+    radius = run["monomer_radius"].values
+    chosen = range(run.sizes["snapshot"]) if chosen is None else chosen
+    return [_frame(run.isel(snapshot=k), radius) for k in chosen]
+
+
+def _frame(snapshot, radius):
+    there = snapshot["snapshot_fragment"].values >= 0
+    position = np.stack([snapshot[f"snapshot_{axis}"].values for axis in "xyz"], axis=1)[there]
+    fragment = snapshot["snapshot_fragment"].values[there]
+    position = position - np.average(position, axis=0, weights=radius[there] ** 3 * (fragment == 0))
+    return Frame(position, radius[there], fragment, np.nan_to_num(snapshot["snapshot_normal_force"].values[there]))
+
+
+def fragment_colours(fragment):
+    """Colours (n, 3) of monomers by the number of their fragment (n,): 0 the largest."""
+    fragment = np.asarray(fragment)
+    others = np.array([to_rgb(colour) for colour in OTHERS])[(fragment - 1) % len(OTHERS)]
+    return np.where((fragment == 0)[:, None], to_rgb(LARGEST), others)
+
+
+def force_scale(shown):
+    """Symmetric scale for the colours of the forces of some frames [N], matplotlib.colors.Normalize."""
+    greatest = np.quantile(np.abs(np.concatenate([frame.force for frame in shown])), CROWDED) or 1e-9
+    return Normalize(-greatest, greatest)
+
+
+def force_colours(force, scale):
+    """Colours (n, 3) of monomers by the normal force on them (n,) [N], see `force_scale`."""
+    return FORCES(scale(force))[:, :3]
+
+
+def title_of(run, drive=None):
+    """Title of the pictures of one run, in two lines; the drive that it names itself if none is given."""
+    attrs = run.attrs
+    size = f"{float(attrs['a_eff']) / NM:.4g} nm"
+    title = f"{attrs['material']} {attrs['type']} {size}, seed {attrs['seed']}\n"
+    return title + drive_text(drive_of([run]) if drive is None else drive)

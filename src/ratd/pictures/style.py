@@ -1,0 +1,326 @@
+"""What all figures share: colours, markers, sizes in print, and saving to the same bytes each time.
+
+No pyplot: figures are plain `Figure` objects, so that nothing depends on a display or on what was drawn before.
+"""
+
+import functools
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib import font_manager
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator
+
+from ratd.base.errors import InputError
+from ratd.base.units import NM
+from ratd.pipeline.io import atomic
+
+MILLIMETRE = 1 / 25.4
+"""Millimetre in inches, the unit of matplotlib."""
+ONE_COLUMN = 88 * MILLIMETRE
+"""Width of one column of the journal."""
+TWO_COLUMNS = 180 * MILLIMETRE
+"""Width of two columns of the journal."""
+
+# Okabe and Ito's palette, told apart with any colour vision; nearest to the paper's red, green and blue.
+TYPE_COLOUR = {"BA": "#D55E00", "BAM1": "#009E73", "BAM2": "#0072B2"}
+TYPE_MARKER = {"BA": "o", "BAM1": "s", "BAM2": "^"}
+HIGHLIGHT = "#E69F00"
+GREY = "#8A8A8A"
+_OTHER_COLOURS = ("#CC79A7", "#000000", "#56B4E9")
+_OTHER_MARKERS = ("D", "v", "P")
+
+RC = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine, see `own_fonts_first`
+    "mathtext.fontset": "dejavusans",
+    "font.size": 7.5,
+    "axes.labelsize": 8,
+    "axes.titlesize": 8,
+    "figure.titlesize": 8,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "legend.handletextpad": 0.5,
+    "legend.columnspacing": 1.5,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.5,
+    "axes.unicode_minus": True,
+    "pdf.fonttype": 42,
+    "savefig.dpi": 300,
+    "svg.hashsalt": "ratd",
+}
+"""matplotlib settings of every figure; texts are 7.5 points or larger at print width."""
+
+
+def own_fonts_first():
+    """Let the fonts that come with matplotlib win over fonts of the system that have the same name.
+
+    Which of them is found depends on the order in which the system lists its files, and their glyphs differ.
+    """
+    own = Path(matplotlib.get_data_path())
+    fonts = font_manager.fontManager
+    fonts.ttflist.sort(key=lambda font: not Path(font.fname).is_relative_to(own))
+    fonts.addfont(own / "fonts" / "ttf" / "DejaVuSans.ttf")  # forgets what was found before
+
+
+own_fonts_first()
+
+
+def styled(draw):
+    """Decorate a function so that it draws with `RC` and leaves the user's matplotlib settings alone."""
+
+    @functools.wraps(draw)
+    def wrapper(*args, **kwargs):
+        with matplotlib.rc_context():
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(RC)
+            return draw(*args, **kwargs)
+
+    return wrapper
+
+
+def new_figure(width, height, title):
+    """Empty figure with a title line.
+
+    Parameters
+    ----------
+    width, height : float
+        Size in print [inches].
+    title : str
+        What is shown and with which drive.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(width, height), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0.03, hspace=0.03)
+    figure.suptitle(title)
+    return figure
+
+
+@styled
+def save(figure, *paths):
+    """Write a figure to each path, in the format of its suffix, the same bytes each time.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    *paths : str or pathlib.Path
+        Names that end in .pdf, .png or .svg. A file appears only when it is complete.
+
+    Raises
+    ------
+    InputError
+        If a suffix is none of these.
+    """
+    # No date, no version: nothing that differs between two runs may stand in the file.
+    metadata = {
+        "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+        "png": {"Software": None},
+        "svg": {"Date": None, "Creator": None},
+    }
+    for path in map(Path, paths):
+        kind = path.suffix.removeprefix(".").lower()
+        if kind not in metadata:
+            raise InputError(f"figure file '{path}': the name must end in .pdf, .png or .svg")
+        with atomic(path) as part:
+            figure.savefig(part, format=kind, metadata=metadata[kind])
+
+
+def type_style(types):
+    """Colour and marker of each growth type.
+
+    Parameters
+    ----------
+    types : iterable of str
+
+    Returns
+    -------
+    dict
+        type -> {"color", "marker"}; types that the paper does not have get colours of their own.
+    """
+    others = [kind for kind in dict.fromkeys(types) if kind not in TYPE_COLOUR]
+    style = {}
+    for kind in dict.fromkeys(types):
+        k = others.index(kind) % len(_OTHER_COLOURS) if kind in others else 0
+        colour = TYPE_COLOUR.get(kind, _OTHER_COLOURS[k])
+        style[kind] = {"color": colour, "marker": TYPE_MARKER.get(kind, _OTHER_MARKERS[k])}
+    return style
+
+
+def offsets(a_eff, n):
+    """Small shifts in size that keep the points of n types apart (paper, Fig. 2).
+
+    Parameters
+    ----------
+    a_eff : array_like
+        Sizes in the figure [m].
+    n : int
+        Number of types.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n,)
+        Shifts [m], symmetric about zero, 14 % of `size_step` apart.
+    """
+    return 0.14 * size_step(a_eff) * (np.arange(n) - (n - 1) / 2)
+
+
+def size_step(a_eff):
+    """Smallest step between the sizes of a figure [m], half of a lone size."""
+    sizes = np.unique(np.rint(np.asarray(a_eff, dtype=float) / 1e-12)) * 1e-12
+    return np.diff(sizes).min() if len(sizes) > 1 else 0.5 * sizes[0]
+
+
+def size_limits(a_eff):
+    """Ends of an axis of sizes [m] with room for bars and offsets, also for one size alone."""
+    margin = 0.08 * np.ptp(a_eff) + 0.3 * size_step(a_eff)
+    return np.min(a_eff) - margin, np.max(a_eff) + margin
+
+
+def logarithmic(axis, least=0.6):
+    """Make the limits of a logarithmic axis fit for reading: a least width, and numbers that do not crowd.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        With the data in place.
+    least : float
+        Least width in decades; a narrower axis is widened to both sides.
+    """
+    low, high = np.log10(axis.get_view_interval())
+    extra = max(0.0, least - (high - low)) / 2
+    low, high = low - extra, high + extra
+    set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
+    set_limits(10**low, 10**high)
+    # Where fewer than two decades stand on the axis, 2 and 5 are labelled too, and on half a decade still more.
+    labelled = () if high - low >= 2 else (2, 5) if high - low > 0.55 else (2, 3, 4, 5, 7)
+    axis.set_major_locator(LogLocator(subs=(1,)))
+    axis.set_minor_locator(LogLocator(subs=range(2, 10)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _power_text(value)))
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: _power_text(value, labelled)))
+
+
+def _power_text(value, labelled=(1,)):
+    """Text of a tick m 10^e of a logarithmic axis, empty unless m is to be labelled."""
+    exponent = int(np.floor(np.log10(value) + 1e-9))
+    digit = round(value / 10.0**exponent)
+    if digit not in labelled:
+        return ""
+    if -2 <= exponent <= 3:
+        return f"{value:g}"
+    return f"$10^{{{exponent}}}$" if digit == 1 else rf"${digit}\times10^{{{exponent}}}$"
+
+
+def mean_and_range(axes, x, cells, name, style, label=None):
+    """Means as markers and minima to maxima as vertical bars.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    x : array_like
+        Places of the cells on the axis.
+    cells : pandas.DataFrame
+        What `ratd.experiments.spin_up.ensemble.cell_statistics` returns.
+    name : str
+        Column of the grain table; cells without a value are left out.
+    style : dict
+        Colour and marker.
+    label : str, optional
+        Text in the legend.
+    """
+    mean, low, high = (cells[f"{name}_{part}"].to_numpy(float) for part in ("mean", "minimum", "maximum"))
+    there = np.isfinite(mean)
+    x, mean, low, high = (np.asarray(values)[there] for values in (x, mean, low, high))
+    bars = bar_lengths(mean, low, high)
+    axes.errorbar(x, mean, bars, ls="none", elinewidth=0.8, capsize=1.5, label=label, **style)
+
+
+def bar_lengths(middle, low, high):
+    """Lengths of error bars, never below zero.
+
+    Parameters
+    ----------
+    middle, low, high : array_like, shape (n,)
+
+    Returns
+    -------
+    numpy.ndarray, shape (2, n)
+        Below and above the middle.
+    """
+    middle = np.asarray(middle, dtype=float)
+    # the mean of equal values may differ from them by rounding, and matplotlib refuses negative lengths
+    return np.maximum([middle - low, high - middle], 0.0)
+
+
+def empty(axes, text="no grains"):
+    """Say in a panel that it has nothing to show."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY)
+
+
+def sizes_label():
+    """Text of an axis of effective radii."""
+    return r"effective radius $a_\mathrm{eff}$ [nm]"
+
+
+def nanometres(values):
+    """Lengths [m] in nm."""
+    return np.asarray(values, dtype=float) / NM
+
+
+def power_of_ten(values):
+    """Power of ten that brings the greatest finite value between 1 and 10, with the text for an axis label.
+
+    Parameters
+    ----------
+    values : array_like
+
+    Returns
+    -------
+    exponent : int
+        0 where there is no value above zero, or where the values need no scaling.
+    text : str
+        Such as ``10^{-16} `` in mathtext, empty for exponent 0.
+    """
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values) & (values > 0)]
+    exponent = int(np.floor(np.log10(values.max()))) if len(values) else 0
+    if -1 <= exponent <= 3:
+        return 0, ""
+    return exponent, rf"$10^{{{exponent}}}$ "
+
+
+def drive_text(drive):
+    """How the drive is named in a title."""
+    return f"drive: {drive}" if drive else "drive not stated"
+
+
+def drive_of(table):
+    """The drives that a table or a list of runs names, joined.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or sequence of xarray.Dataset
+
+    Returns
+    -------
+    str
+        Empty if none is named.
+    """
+    if isinstance(table, list | tuple):
+        drives = {run.attrs.get("drive", "") for run in table}
+    else:
+        drives = set(table["drive"].dropna()) if "drive" in table else set()
+    return ", ".join(sorted(drives - {""}))

@@ -1,0 +1,1 @@
+"""Files, jobs, settings: knows no science."""

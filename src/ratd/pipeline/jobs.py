@@ -1,0 +1,340 @@
+"""What a job of the pipeline needs around the calculation: log, provenance, blocks of grains that outlive a kill.
+
+This module decides no number: it is left out of all source hashes (see `ratd.pipeline.provenance`).
+"""
+
+import fcntl
+import logging
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+from ratd.base.errors import FileError, InputError
+from ratd.pipeline import schema
+from ratd.pipeline.partial import Block, Pieces, locked
+from ratd.pipeline.provenance import provenance, source_hash
+
+WRITES = {
+    "grow": ("grains",),
+    "spin_up": ("spinup",),
+    "spin_up_cuda": ("spinup",),
+    "disrupt": ("disruption",),
+    "ensemble": ("table", "cells", "fit"),
+    "grown": ("table",),
+    "composition": ("table1", "table2"),
+    "pairs": ("pairs",),
+    "firm_bounds": ("firm_bounds",),
+    "reproduction_data": ("fragments", "firm_bounds"),
+    "parameters": ("disruption",),
+    "parameter_table": ("parameters",),
+    "formulae": ("disruption",),
+    "formula_table": ("formulae",),
+    "calibration_runs": ("spinup",),
+    "calibration": ("calibration",),
+}
+"""Kinds of files that the script of a rule writes."""
+
+READS = {"grain_page": ("figures/grain_page.html", "figures/grain_page.js")}
+"""Files of ratd beside its modules that the script of a rule reads."""
+
+PROGRESS_INTERVAL = 10.0
+"""Least time between two messages of progress of one grain [s]."""
+
+_held = []  # open files whose locks last as long as the process
+
+
+def code_hash(scripts, rule):
+    """Hash of all source that the output of a rule depends on.
+
+    Parameters
+    ----------
+    scripts : path-like
+        Folder of the scripts; a rule and its script have the same name.
+    rule : str
+
+    Returns
+    -------
+    str
+        See `ratd.pipeline.provenance.source_hash`; the layout of the files that the rule writes, and the files of `READS`, are
+        part of it.
+    """
+    layout = [schema.fingerprint(kind) for kind in WRITES.get(rule, ())]
+    texts = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in READS.get(rule, ())]
+    return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout + texts)
+
+
+def code_hashes(scripts):
+    """Hashes of the source of all scripts of a folder.
+
+    Parameters
+    ----------
+    scripts : path-like
+
+    Returns
+    -------
+    dict of str to str
+        Name of the rule -> `code_hash`.
+    """
+    return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
+
+
+def gpu_needed(workflow):
+    """Whether this process needs a GPU for what is to be computed.
+
+    Parameters
+    ----------
+    workflow : snakemake.workflow.Workflow
+        About to start, its jobs known.
+
+    Returns
+    -------
+    bool
+        False for jobs that run on a cluster, or in an environment of their own.
+    """
+    here = workflow.local_exec and not workflow.deployment_settings.deployment_method
+    return here and any("gpu" in job.resources.keys() for job in workflow.dag.needrun_jobs())
+
+
+class Job:
+    """One job, as a context: logs to its file and the terminal, and ends with one sentence on bad input.
+
+    Parameters
+    ----------
+    snakemake : snakemake.script.Snakemake
+        The object of this name in a script. ``params.code`` is from `code_hash`, ``params.settings`` is a dict of all
+        that the output depends on, next to the inputs.
+
+    Attributes
+    ----------
+    settings : dict
+        As given.
+    log : logging.Logger
+        Writes to the first log file of the rule and to the terminal.
+    provenance : dict
+        Attributes for the files that the job writes, from `ratd.pipeline.provenance.provenance`.
+
+    Notes
+    -----
+    A rule and its script have the same name, or ``params.script`` is the name of the script.
+    """
+
+    def __init__(self, snakemake):
+        self._snakemake = snakemake
+        self.settings = snakemake.params.settings
+        self.log = logging.getLogger("ratd.job")
+
+    def __enter__(self):
+        self._set_up_log()
+        try:
+            job = self._snakemake
+            script = getattr(job.params, "script", job.rule)
+            if code_hash(job.scriptdir, script) != job.params.code:
+                raise InputError("the source was changed after snakemake was started: start the same command again")
+            self.provenance = provenance(job.params.code, self.settings, job.input)
+        except (InputError, FileError) as error:
+            self._fail(error)
+        return self
+
+    def _set_up_log(self):
+        """Full messages into the log file, the same with the name of the job in front on the terminal."""
+        self.log.setLevel(logging.INFO)
+        self.log.propagate = False
+        wildcards = self._snakemake.wildcards
+        words = [f"{word} nm" if name == "size" else word for name, word in wildcards.items()]
+        label = " ".join([self._snakemake.rule, *words]).replace("%", "%%")
+        for handler, form in (
+            (logging.FileHandler(self._snakemake.log[0]), "%(asctime)s %(message)s"),
+            (logging.StreamHandler(sys.stderr), f"{label}: %(message)s"),
+        ):
+            handler.setFormatter(logging.Formatter(form))
+            self.log.addHandler(handler)
+
+    def __exit__(self, kind, error, traceback):
+        if isinstance(error, InputError | FileError):
+            self._fail(error)
+        elif error is not None and not isinstance(error, SystemExit):
+            self.log.error("failed", exc_info=(kind, error, traceback))
+        return False
+
+    def _fail(self, error):
+        self.log.error(f"error: {error}")
+        sys.exit(1)
+
+    def block(self, target, kind, material, seeds, make):
+        """Write the file of a block of grains, grain by grain, going on where a killed job was.
+
+        Parameters
+        ----------
+        target : path-like
+            The file to write.
+        kind : str
+            A key of `ratd.pipeline.schema.KINDS`.
+        material : ratd.base.materials.Material
+            What the grains are made of.
+        seeds : sequence of int
+            Seeds of the grains, in the order in which they stand in the file. Where the rule has the wildcard `seeds`,
+            those outside it are left out: a file of grains may hold more of them than a drive wants.
+        make : callable
+            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.pipeline.io`). Below the path `checkpoint` it may
+            keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
+            has another name and is never found. If it raises RuntimeError the other grains are made all the same.
+
+        Raises
+        ------
+        InputError
+            If grains failed: one sentence with the seed and the reason of each.
+        """
+        wanted = self._snakemake.wildcards.get("seeds")
+        if wanted:
+            seeds = [seed for seed in seeds if seed in seeds_of(wanted)]
+        block = Block(Path(target), material, list(seeds), self.provenance)
+
+        def make_all(waiting, done):
+            for number, (block, seed) in enumerate(waiting):
+                try:
+                    row = make(seed, block.checkpoint(seed))
+                except RuntimeError as error:
+                    if type(error) is not RuntimeError:  # a subclass is no matter of this grain
+                        raise
+                    done(number, failure=error)
+                else:
+                    done(number, row)
+
+        self.blocks([block], kind, make_all)
+
+    def blocks(self, blocks, kind, make):
+        """Write the files of some blocks of grains together, going on where a killed job was.
+
+        Parameters
+        ----------
+        blocks : list of Block
+        kind : str
+            A key of `ratd.pipeline.schema.KINDS`.
+        make : callable
+            ``make(waiting, done)`` computes the grains that are not finished yet, ``waiting``, a list of pairs of a
+            block and a seed, in any order. It calls ``done(number, row)`` with the place in this list and the row
+            (see `ratd.pipeline.io`) of each grain that it has finished, or ``done(number, failure=reason)``.
+
+        Raises
+        ------
+        InputError
+            If grains failed: one sentence with the seed and the reason of each.
+        """
+        with ExitStack() as locks:
+            for block in sorted(blocks, key=lambda block: block.target):
+                locks.enter_context(locked(block.folder / "lock", self.log))
+            pieces = {block.target: Pieces(block, kind) for block in blocks}
+            waiting = [(block, seed) for block in blocks for seed in block.seeds if seed not in pieces[block.target]]
+            every = sum(len(block.seeds) for block in blocks)
+            kept = every - len(waiting)
+            finished = kept
+            start = time.monotonic()
+            failures = []
+            where = blocks[0].target if len(blocks) == 1 else f"{len(blocks)} files"
+
+            def done(number, row=None, *, failure=None):
+                nonlocal finished, start
+                block, seed = waiting[number]
+                name = f"{block.target.parent.name} seed {seed}" if len(blocks) > 1 else f"seed {seed}"
+                if failure is not None:
+                    failures.append(f"{name}: {failure}")
+                    self.log.error(failures[-1])
+                    return
+                pieces[block.target].add(seed, row)
+                finished += 1
+                seconds = time.monotonic() - start
+                start = time.monotonic()
+                self.log.info(f"{name}: done in {seconds:.1f} s ({finished} of {every} grains)")
+
+            try:
+                if waiting:
+                    make(waiting, done)
+                if failures:
+                    raise InputError(
+                        f"{where}: {len(failures)} of {len(waiting)} grains failed, the others are kept: "
+                        + "; ".join(failures)
+                    )
+            except BaseException:
+                for own in pieces.values():
+                    own.write()
+                raise
+            for own in pieces.values():
+                own.join()
+            self.log.info(f"{every} grains written to {where}, {kept} of them were finished before")
+
+    def provenance_of(self, settings, inputs):
+        """Attributes of one of several files that the job writes, which has settings and inputs of its own."""
+        return provenance(self._snakemake.params.code, settings, inputs)
+
+    def progress(self, seed, place=""):
+        """Callback for `ratd.spin_up` that says how far the run of one grain is.
+
+        Parameters
+        ----------
+        seed : int
+        place : str, optional
+            What stands before the seed, where the job has several blocks.
+
+        Returns
+        -------
+        callable
+            ``progress(omega, mass_fraction, seconds_to_go, steps)``; a message at most every `PROGRESS_INTERVAL`.
+        """
+        last = time.monotonic()
+
+        def say(omega, mass_fraction, seconds_to_go, steps):
+            nonlocal last
+            now = time.monotonic()
+            if now - last >= PROGRESS_INTERVAL:
+                last = now
+                self.log.info(
+                    f"{place}seed {seed}: omega {omega:.3g} rad/s, mass left {100 * mass_fraction:.0f} %, "
+                    f"{duration(seconds_to_go)} to go, {steps} steps"
+                )
+
+        return say
+
+
+def seeds_of(block):
+    """Seeds of a block, a range, from its name such as ``"0-9"``."""
+    first, last = (int(seed) for seed in block.split("-"))
+    return range(first, last + 1)
+
+
+def duration(seconds):
+    """A length of time in words, such as ``"about 4 min"``; "unknown time" where it is no finite number."""
+    if seconds is None or not 0 <= seconds < float("inf"):
+        return "unknown time"
+    for unit, length in (("d", 86400), ("h", 3600), ("min", 60)):
+        if seconds >= 2 * length:
+            return f"about {seconds / length:.0f} {unit}"
+    return f"about {seconds:.0f} s"
+
+
+def release_stale_locks(folder=".snakemake"):
+    """Remove the locks that a killed Snakemake left behind, unless another one is running here.
+
+    Snakemake locks its outputs by files that name no process, so after a `kill -9` it cannot know that nobody is left
+    to remove them, and asks for `--unlock`. Here every Snakemake holds a shared lock of the operating system while it
+    lives. Whoever can have that lock alone is the only one, and what Snakemake's own locks say is out of date. While
+    another one lives they are left in place, and Snakemake refuses to work on the same files at the same time.
+
+    Parameters
+    ----------
+    folder : path-like
+        Snakemake's own folder.
+    """
+    folder = Path(folder)
+    folder.mkdir(exist_ok=True)
+    handle = open(folder / "ratd.lock", "a")
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        pass
+    else:
+        for lock in (folder / "locks").glob("*.lock"):
+            lock.unlink(missing_ok=True)
+    # waits only for another one that is in the lines above
+    fcntl.flock(handle, fcntl.LOCK_SH)
+    _held.append(handle)

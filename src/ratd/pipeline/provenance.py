@@ -1,0 +1,323 @@
+"""Which source, settings and versions a file was made with.
+
+A stage of the pipeline has to run again when something that its results depend on has changed, and only then. Its
+source is one script in `workflow/scripts` and every module of ratd that the script imports, directly or through other
+modules. `source_hash` hashes the text of exactly these, without comments and docstrings, so that touching or explaining
+a file changes nothing, a change of a figure concerns figures only, and a change of a contact law concerns the spin-ups
+and what follows but not the growth.
+
+The plumbing (`PLUMBING`: reading and writing files, checking the config, running jobs) is imported by every script
+and decides no number, so it stays outside the hash. What it does decide, the variables of each kind of file, enters as
+`ratd.pipeline.schema.fingerprint(kind)`, stage by stage.
+"""
+
+import ast
+import hashlib
+import json
+import tokenize
+from functools import cache
+from importlib import metadata
+from io import StringIO
+from pathlib import Path
+
+from ratd.base.errors import InputError
+
+PLUMBING = frozenset({"ratd", "ratd.pipeline.schema", "ratd.pipeline.io", "ratd.pipeline.provenance", "ratd.pipeline.config", "ratd.pipeline.jobs", "ratd.pipeline.partial"})
+"""Modules outside every source hash: they carry numbers from a file to a function and back."""
+
+NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")
+"""Packages whose versions are written into every file."""
+
+_ROOT = Path(__file__).parent.parent
+
+
+def module_files(root=_ROOT):
+    """Source files of all modules of ratd.
+
+    Parameters
+    ----------
+    root : Path, optional
+        Folder of the package.
+
+    Returns
+    -------
+    dict of str to Path
+        Dotted name, e.g. ``"ratd.laws.jkr"``, -> file; ``"ratd"`` is the package itself, and stands for its
+        ``__init__.py`` as every package does.
+    """
+    # The names are those of a listing: on a file system that ignores case, `ratd.Grain` is not the module `ratd.aggregates.grain`.
+    files = {}
+    for path in sorted(root.rglob("*.py")):
+        *folders, name = path.relative_to(root).with_suffix("").parts
+        if name == "__init__":
+            files[".".join(("ratd", *folders))] = path
+        else:
+            files.setdefault(".".join(("ratd", *folders, name)), path)
+    return files
+
+
+def imported_modules(source, name=None, root=_ROOT):
+    """Modules of ratd that a piece of Python source imports itself, anywhere in it.
+
+    Parameters
+    ----------
+    source : str
+        Text of a script or a module.
+    name : str, optional
+        Dotted name of the module, needed to resolve its relative imports.
+    root : Path, optional
+        Folder of the package.
+
+    Returns
+    -------
+    set of str
+        Dotted names. A package counts together with its modules: ``from ratd.laws import jkr`` gives ``ratd.laws``
+        and ``ratd.laws.jkr``.
+
+    Raises
+    ------
+    InputError
+        If it imports from a module of ratd that does not exist.
+    """
+    return _imported(source, name, module_files(root))
+
+
+def _imported(source, name, files):
+    """`imported_modules` among the modules of `files`, see `module_files`."""
+    found = set()
+    for node in _statements(source)[0]:
+        if isinstance(node, ast.Import):
+            modules = candidates = [alias.name for alias in node.names]
+        else:
+            base = node.module or ""
+            if node.level:
+                package = name if files[name].name == "__init__.py" else name.rpartition(".")[0]
+                for _ in range(node.level - 1):
+                    package = package.rpartition(".")[0]
+                base = f"{package}.{base}" if base else package
+            modules, candidates = [base], [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        for module in modules:
+            if module.split(".")[0] == "ratd" and module not in files:
+                raise InputError(f"{name or 'a script'} imports {module}, but there is no such module")
+        for candidate in candidates:
+            parts = candidate.split(".")
+            # importing a.b.c runs a and a.b too
+            found.update(".".join(parts[:depth]) for depth in range(1, len(parts) + 1))
+    return found & files.keys()
+
+
+# Snakemake takes the hashes of all scripts at each start; most of them are of the same modules.
+@cache
+def _statements(source):
+    """Statements of import, and strings that stand alone, in a piece of Python source: two lists of nodes."""
+    imports, strings = [], []
+    waiting = [ast.parse(source)]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            imports.append(node)
+        elif isinstance(node, ast.Expr):
+            if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+                strings.append(node)
+        else:
+            # expressions, by far the most of all nodes, hold no statements
+            waiting += [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
+    return imports, strings
+
+
+@cache
+def essential_text(source):
+    """Python source without what decides no number: comments, docstrings, blank lines.
+
+    Parameters
+    ----------
+    source : str
+
+    Returns
+    -------
+    str
+        The remaining lines as they stand. (They are not parsed and written anew, because what that gives differs
+        between versions of Python.)
+    """
+    lines = source.splitlines()
+    left_out = set()
+    for token in tokenize.generate_tokens(StringIO(source).readline):
+        row, column = token.start[0] - 1, token.start[1]
+        if token.type == tokenize.COMMENT:
+            lines[row] = lines[row][:column].rstrip()
+        # a row that holds nothing else ends in NL, one that ends a statement in NEWLINE
+        if token.type == tokenize.NL and not lines[row].strip():
+            left_out.add(row)
+    for node in _statements(source)[1]:
+        first, last = node.lineno - 1, node.end_lineno
+        if not lines[first].encode()[: node.col_offset].strip():
+            left_out.update(range(first, last))
+    return "\n".join(line for row, line in enumerate(lines) if row not in left_out)
+
+
+def closure(modules, root=_ROOT, leave_out=PLUMBING):
+    """Modules together with every module of ratd that they import, directly or not.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        Dotted names.
+    root : Path, optional
+        Folder of the package.
+    leave_out : collection of str, optional
+        Modules that are neither counted nor followed.
+
+    Returns
+    -------
+    list of str
+        Sorted dotted names.
+
+    Raises
+    ------
+    InputError
+        If ratd has no module of one of the names.
+    """
+    return sorted(_texts(modules, module_files(root), leave_out))
+
+
+def _texts(modules, files, leave_out=PLUMBING):
+    """Source of every module of `closure`: dict of dotted name to text."""
+    waiting = [name for name in modules if name not in leave_out]
+    found = {}
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        if name not in files:
+            raise InputError(f"there is no module {name!r} in ratd to take a source hash of")
+        found[name] = files[name].read_text()
+        waiting.extend(_imported(found[name], name, files) - found.keys() - set(leave_out))
+    return found
+
+
+def source_hash(script=None, modules=(), extra=(), root=_ROOT):
+    """Content hash of a script, of some modules, and of every module of ratd that these import.
+
+    Parameters
+    ----------
+    script : path-like, optional
+        A script, e.g. of `workflow/scripts`.
+    modules : iterable of str, optional
+        Dotted names of modules of ratd.
+    extra : iterable of str, optional
+        Further text that the result depends on, e.g. the fingerprint of the kind of file that is written.
+    root : Path, optional
+        Folder of the package.
+
+    Returns
+    -------
+    str
+        16 hexadecimal digits. Comments, docstrings, the time at which a file was changed and the place where it lies
+        do not enter.
+
+    Raises
+    ------
+    InputError
+        If ratd has no module of one of the names.
+    """
+    digest = hashlib.sha256()
+    files = module_files(root)
+    start = set(modules)
+    if script is not None:
+        text = Path(script).read_text()
+        start |= _imported(text, None, files)
+        digest.update(f"script\0{essential_text(text)}\0".encode())
+    for name, text in sorted(_texts(start, files).items()):
+        digest.update(f"{name}\0{essential_text(text)}\0".encode())
+    for text in extra:
+        digest.update(f"extra\0{text}\0".encode())
+    return digest.hexdigest()[:16]
+
+
+def canonical(settings):
+    """Settings as one line of JSON that depends on their content alone.
+
+    Parameters
+    ----------
+    settings : dict
+        Numbers, strings, booleans, None, lists and dictionaries of these.
+
+    Returns
+    -------
+    str
+    """
+    return json.dumps(settings, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def settings_hash(settings):
+    """Hash of settings, whatever the order of their keys.
+
+    Parameters
+    ----------
+    settings : dict
+        See `canonical`.
+
+    Returns
+    -------
+    str
+        16 hexadecimal digits.
+    """
+    return hashlib.sha256(canonical(settings).encode()).hexdigest()[:16]
+
+
+def file_hash(*paths):
+    """Hash of the bytes of some files, in the order given.
+
+    Parameters
+    ----------
+    *paths : path-like
+
+    Returns
+    -------
+    str
+        16 hexadecimal digits.
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        with open(path, "rb") as handle:
+            digest.update(hashlib.file_digest(handle, "sha256").digest())
+    return digest.hexdigest()[:16]
+
+
+def versions():
+    """Versions of ratd and of the packages that its numbers come from.
+
+    Returns
+    -------
+    str
+        ``"ratd 0.1.0, numpy 2.4.6, ..."``.
+    """
+    return ", ".join(f"{name} {metadata.version(name)}" for name in NUMERICAL_PACKAGES)
+
+
+def provenance(code, settings, inputs=()):
+    """Global attributes that tell where the content of a file comes from.
+
+    Parameters
+    ----------
+    code : str
+        From `source_hash`.
+    settings : dict
+        Everything in the config that the content depends on.
+    inputs : iterable of path-like, optional
+        Files that the content was computed from.
+
+    Returns
+    -------
+    dict
+        ``code_hash``, ``settings`` (JSON), ``settings_hash``, ``input_hash`` (empty where there are no inputs) and
+        ``versions``. The same inputs give the same attributes: no time, no host, no path.
+    """
+    inputs = list(inputs)
+    return {
+        "code_hash": code,
+        "settings": canonical(settings),
+        "settings_hash": settings_hash(settings),
+        "input_hash": file_hash(*inputs) if inputs else "",
+        "versions": versions(),
+    }

@@ -1,1 +1,0 @@
-"""docs/reproduction.md: the paper's figures, tables and quoted numbers beside ours, from committed data alone."""
