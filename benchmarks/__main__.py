@@ -4,8 +4,6 @@ import argparse
 import sys
 from pathlib import Path
 
-from ratd.cuda import device
-
 from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
@@ -14,7 +12,7 @@ from ratd.pipeline import config
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("profile", "gpu")
+ON_REQUEST = ("profile",)
 """Parts that are done only when they are named."""
 
 PROFILED = ("150", "300")
@@ -91,8 +89,6 @@ def _measure(arguments):
     quick = arguments.quick
     if quick and arguments.out is None:
         raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
-    if "gpu" in parts:
-        device.require()
     out = arguments.out or HERE / "results"
     about = {
         "machine": machine.processor(),
@@ -155,20 +151,6 @@ def _measure(arguments):
         plan = _plan([ROOT / "config" / "config.yaml", *arguments.config], quick)
         sizes = PROFILED if not quick else plan.sizes
         profile.measure(out, plan, sizes=sizes, about=about, say=say)
-    if "gpu" in parts:
-        # Imported here, because it compiles for a device.
-        from benchmarks import gpu
-
-        gpu.measure(
-            out,
-            monomers=[10] if quick else [10, 100, 500, 2000],
-            steps=10 if quick else arguments.steps,
-            repeats=1 if quick else arguments.pairs,
-            plan=_plan([ROOT / "config" / "config.yaml", *arguments.config], quick, {"types": ["BA"]}, max_steps=20),
-            minutes=arguments.minutes,
-            about=about,
-            say=say,
-        )
     report.write(out)
     if arguments.out is None:
         report.quote(out, ROOT / "README.md")

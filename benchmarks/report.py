@@ -24,7 +24,7 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_goals_section, _kernel, _cost, _profile, _scaling, _pipeline, _gpu)]
+    parts += [section(out) for section in (_goals_section, _kernel, _cost, _profile, _scaling, _pipeline)]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -291,47 +291,6 @@ def _pipeline(out):
             table(["size [nm]", "grains", "work [s]", "pipeline [s]", "not work"], rows),
         ]
     )  # fmt: skip
-
-
-def _gpu(out):
-    data, paper = _read(out, "gpu"), _read(out, "gpu_paper")
-    if data is None:
-        return ""
-    first = data.iloc[0]
-    text = [
-        f"Device: {first['device']}, {first['multiprocessors']} multiprocessors. Kernel: {first['registers']} "
-        f"registers a thread, {first['local_bytes']} bytes of local memory a thread, {first['shared_bytes']} bytes of "
-        f"shared memory a block. {first['software']}.",
-        "Median (least - greatest). One grain alone shows what barriers and latencies make a step cost; as many as "
-        "are in flight at once show the throughput. Memory: what a step reads and writes of its contacts, over its "
-        "time, beside the greatest rate of the device's memory, above which only caches can bring it.",
-    ]
-    if data["quick"].eq("yes").any():
-        text.insert(0, "**A quick run, which only shows that the benchmark works: its numbers mean nothing.**")
-    rows = [
-        [
-            kind, n, case["contacts"].iloc[0], case["threads"].iloc[0], copies, f"{case['occupancy'].iloc[0]:.0%}",
-            _spread(case["us_per_step"], 2), _spread(case["ns_per_contact_step"], 3),
-            f"{case['GB_s'].median():.3g} of {case['peak_GB_s'].iloc[0]:.0f}",
-        ]
-        for (kind, n, copies), case in data.groupby(["type", "monomers", "grains"], sort=False)
-    ]  # fmt: skip
-    head = [
-        "type", "monomers", "contacts", "threads", "grains", "occupancy", "us per step", "ns per contact and step",
-        "memory [GB/s]",
-    ]  # fmt: skip
-    lines = ["## On a GPU\n", "\n\n".join(text) + "\n", table(head, rows)]
-    if paper is not None:
-        cells = [
-            [row.drive, row.material, row.type, row.grains, f"{row.steps:.3g}", f"{row.seconds:.0f}"]
-            for row in paper.itertuples()
-        ]
-        minutes = paper["seconds"].sum() / 60.0
-        lines += [
-            f"Relaxation and spin-up of whole ensembles: {paper['grains'].sum()} grains in {minutes:.1f} minutes.\n",
-            table(["drive", "material", "type", "grains", "steps", "seconds"], cells),
-        ]
-    return "\n".join(lines)
 
 
 @styled

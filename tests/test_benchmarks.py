@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ratd.cuda import device
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError
 
 ROOT = Path(__file__).parents[1]
 
@@ -80,26 +79,6 @@ def test_cost_has_every_cell_in_both_paces_and_sums_up(results):
         own = [float(row["core_hours_cell"]) for row in cells if row["drive"] == total["drive"]]
         assert len(own) == 3 and total["grains"] == "6"
         assert math.isclose(float(total["core_hours"]), sum(own), rel_tol=1e-4)
-
-
-def test_gpu_is_measured_where_there_is_one_and_else_said_to_be_missing(tmp_path):
-    """In numba's simulation of a device."""
-    words = ("gpu", "--quick", "--out", tmp_path)
-    done = command(*words, environment={"NUMBA_ENABLE_CUDASIM": "1"})
-    assert done.returncode == 0, done.stderr
-    table = rows(tmp_path / "gpu.csv")
-    assert {(row["type"], row["grains"]) for row in table} == {("BAM2", "1"), ("BA", "1")}
-    for row in table:
-        work = int(row["steps"]) * int(row["grains"]) * int(row["contacts"])
-        assert math.isclose(float(row["ns_per_contact_step"]), float(row["seconds"]) / work * 1e9, rel_tol=1e-4)
-    (paper,) = rows(tmp_path / "gpu_paper.csv")
-    assert (paper["type"], paper["grains"], paper["steps"]) == ("BA", "2", "40")
-    assert "## On a GPU" in (tmp_path / "README.md").read_text()
-    try:
-        device.require()
-    except InputError as error:
-        done = command(*words)
-        assert done.returncode == 1 and done.stderr == f"error: {error}\n"
 
 
 def test_projection_multiplies_only_what_grows_with_the_steps(benchmarks, monkeypatch):
