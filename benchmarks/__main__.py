@@ -7,6 +7,7 @@ from pathlib import Path
 from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
+from ratd.experiments.spin_up import plan as spin_up
 from ratd.pipeline import config
 
 HERE = Path(__file__).parent
@@ -37,7 +38,7 @@ def parser():
     result.add_argument("--core", type=int, default=1, help="core to run on (default 1)")
     result.add_argument("--drive", action="append", choices=DRIVES, help="drive of the cost (default: every one)")
     result.add_argument("--config", type=Path, action="append", default=[],
-                        help="config that stands over config/config.yaml, for the cost")  # fmt: skip
+                        help="config that stands over those in config/, for the cost")  # fmt: skip
     result.add_argument("--coarse", type=int, default=30,
                         help="how much faster than the config says the cost spins up (default 30)")  # fmt: skip
     result.add_argument("--full-below", type=float, default=10.0,
@@ -117,8 +118,7 @@ def _measure(arguments):
             say=say,
         )
     if "cost" in parts:
-        paths = [ROOT / "config" / "config.yaml", *arguments.config]
-        plan = _plan(paths, quick)
+        plan = _plan(arguments.config, quick)
         complete = cost.measure(
             out,
             plan,
@@ -140,7 +140,7 @@ def _measure(arguments):
             say=say,
         )
     if "pipeline" in parts:
-        plan = _plan([ROOT / "config" / "config.yaml", *arguments.config], quick)
+        plan = _plan(arguments.config, quick)
         small = [size for size in plan.sizes[::-1] if float(size) <= arguments.small]
         if not small:
             raise InputError(
@@ -148,7 +148,7 @@ def _measure(arguments):
             )
         pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
     if "profile" in parts:
-        plan = _plan([ROOT / "config" / "config.yaml", *arguments.config], quick)
+        plan = _plan(arguments.config, quick)
         sizes = PROFILED if not quick else plan.sizes
         profile.measure(out, plan, sizes=sizes, about=about, say=say)
     report.write(out)
@@ -158,32 +158,22 @@ def _measure(arguments):
     return 0 if complete else 3
 
 
-def _plan(paths, quick, over=None, **spin_up):
-    """The config; paths in it are meant from the folder of the repository.
-
-    `over` and keys of `spin_up` stand over it in a quick run.
-    """
-    settings = {}
-    for path in paths:
-        settings = config.merge(settings, config.read_yaml(path))
+def _plan(paths, quick):
+    """The plan of the spin-up, whose config the files stand over; paths in it are meant from this repository."""
+    settings = config.load(ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml", *paths)
     settings["materials_file"] = str(ROOT / settings["materials_file"])
     if quick:
-        settings = config.merge(
-            settings,
-            {
-                "materials": ["q-S"],
-                "sizes_nm": [50],
-                "seeds": {"first": 0, "number": 2},
-                "spin_up": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
-                "literal": {"angular_acceleration": 1e17},
-                "snapshots": {"grains": []},
-                "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 9, 10)}
-                | {"calibration": None, "formulae": None},
-            }
-            | (over or {}),
-        )
-        settings["spin_up"] |= spin_up
-    return config.check(settings, ROOT / "config" / "schema")
+        own = {
+            "materials": ["q-S"],
+            "sizes_nm": [50],
+            "seeds": {"first": 0, "number": 2},
+            "run": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
+            "literal": {"angular_acceleration": 1e17},
+            "snapshots": {"grains": []},
+            "figures": dict.fromkeys(settings["spin_up"]["figures"]),
+        }
+        settings = config.merge(settings, {"spin_up": own})
+    return spin_up.check(settings, ROOT / "config" / "schema")
 
 
 if __name__ == "__main__":

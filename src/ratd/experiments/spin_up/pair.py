@@ -4,14 +4,17 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 
-from ratd.base.materials import equilibrium_compression, pull_off_force, reduced_radius
+from ratd.base.materials import Material, equilibrium_compression, pull_off_force, reduced_radius
 from ratd.drives.rotating import make_drive
 from ratd.engine.advance import FEW_CONTACTS, advance
 from ratd.engine.layout import OMEGA
 from ratd.engine.state import new_state
+from ratd.experiments.spin_up.printed import PAPER
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega"]
+__all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega", "table"]
 
 PAIR_COLUMNS = {
     "material": ("", "material of both monomers"),
@@ -125,3 +128,13 @@ def pairs(material, number, seed, smallest, largest, *, damped, undamped, progre
             if progress is not None and (k + 1) % 20 == 0:
                 progress(f"{start}: {k + 1} of {number} pairs")
     return rows
+
+
+def table(files, settings, say):
+    """The table of the pairs of one material, which the settings (arguments of `pairs`) alone decide."""
+    settings = dict(settings)
+    rows = pairs(Material(**settings.pop("material")), **settings, progress=say)
+    return {"pairs": as_dataset(pd.DataFrame(rows))}
+
+
+register("pairs", Kind("Pairs of equal monomers that part", entries(PAIR_COLUMNS), references=PAPER))
