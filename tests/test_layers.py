@@ -34,7 +34,7 @@ def layer(name):
 def experiment(name):
     """The experiment that a module belongs to, if it belongs to one alone."""
     parts = name.split(".")
-    return parts[2] if parts[1] == "experiments" and len(parts) > 2 and parts[2] not in COMMON else None
+    return parts[2] if parts[1:2] == ["experiments"] and len(parts) > 2 and parts[2] not in COMMON else None
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -8,7 +8,6 @@ from html.parser import HTMLParser
 import msgpack
 import numpy as np
 import pytest
-import xarray as xr
 
 from ratd.base.errors import InputError
 from ratd.pictures.grain_page import OPENING, SCRIPT, SPHERES, TEMPLATE, grain_page
@@ -127,5 +126,5 @@ def test_script_and_page_fit_together(page):
 def test_a_run_without_what_the_page_needs():
     with pytest.raises(InputError, match="grain_page: the run has no snapshots"):
         grain_page(make_run(1e8), OMEGA_DISR)
-    unknown = spheres(grain_page(run_with_snapshots(), xr.Dataset({"omega_disr": np.nan})))
+    unknown = spheres(grain_page(run_with_snapshots(), np.nan))
     assert unknown["custom_data"]["steps"]["ratio"] == [None] * 5

@@ -35,6 +35,9 @@ def test_sample_dimensions_have_row_sizes_and_no_others(kind):
 def test_one_name_has_one_unit_in_all_files():
     units = {}
     for kind, name in EVERY_VARIABLE:
+        # columns of a check are its own
+        if kind.startswith("validation_"):
+            continue
         units.setdefault(name, set()).add(kinds.kind_of(kind).variables[name].units)
     assert {name: found for name, found in units.items() if len(found) > 1} == {}
 

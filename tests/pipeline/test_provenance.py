@@ -72,6 +72,7 @@ def test_closure_of_two_modules_that_import_each_other_ends(package):
 
 def test_closure_leaves_plumbing_out_and_does_not_follow_it(package):
     (package / "pipeline").mkdir()
+    (package / "pipeline" / "__init__.py").write_text("")
     (package / "pipeline" / "io.py").write_text("import ratd.sub.twig\n")
     (package / "top.py").write_text("from ratd.pipeline import io\n")
     assert closure(["ratd.top"], package) == ["ratd.top"]
@@ -125,9 +126,7 @@ def test_text_within_a_string_counts():
 
 
 def test_imported_modules_tells_modules_from_names():
-    found = imported_modules(
-        "from ratd.base.errors import FileError\nimport numpy\nfrom ratd.base import units\n"
-    )
+    found = imported_modules("from ratd.base.errors import FileError\nimport numpy\nfrom ratd.base import units\n")
     assert found == {"ratd", "ratd.base", "ratd.base.errors", "ratd.base.units"}
     assert "ratd.base.errors.InputError" not in module_files() and "ratd.Errors" not in module_files()
 

@@ -505,9 +505,9 @@ def save_some(folder):
 
 SCRIPT = """
 import sys
-sys.path.insert(0, sys.argv[1])
+sys.path[:0] = sys.argv[1:3]
 from test_figures import save_some
-save_some(sys.argv[2])
+save_some(sys.argv[3])
 """
 
 
@@ -517,7 +517,7 @@ def test_files_repeat_to_the_last_byte(tmp_path):
     here.mkdir()
     there.mkdir()
     environment = os.environ | {"PYTHONHASHSEED": "4711", "SOURCE_DATE_EPOCH": "1"}
-    arguments = [sys.executable, "-c", SCRIPT, str(Path(__file__).parents[2]), str(there)]
+    arguments = [sys.executable, "-c", SCRIPT, str(Path(__file__).parent), str(Path(__file__).parents[2]), str(there)]
     subprocess.run(arguments, check=True, env=environment)
     save_some(here)
     digests = [

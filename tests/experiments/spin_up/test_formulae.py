@@ -9,11 +9,11 @@ import pytest
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.experiments.spin_up.figures import formulae as figure
+from ratd.experiments.spin_up.figures.formulae import formulae as figure
 from ratd.experiments.spin_up.formula_table import FORMULA_COLUMNS, FORMULAE, formula_effects, formula_table
 from ratd.experiments.spin_up.formulae import use
+from ratd.experiments.spin_up.plan import load
 from ratd.pipeline import io
-from ratd.pipeline.config import load
 
 NU = 0.17
 CONSTANTS = """
@@ -63,7 +63,7 @@ def test_a_formula_is_refused_once_the_engine_is_loaded():
 
 
 def test_only_the_run_without_damping_has_another_material():
-    plan = load("config/config.yaml")
+    plan = load("config/config.yaml", "config/spin_up.yaml")
     assert plan.formulae == list(FORMULAE)
     changed = {formula: plan.formula_runs(formula)[0]["changed"] for formula in FORMULAE}
     assert {name for name, value in changed.items() if value} == {"damping"}

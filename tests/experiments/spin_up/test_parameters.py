@@ -13,10 +13,10 @@ from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.figures.figure9 import figure9
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.parameters import PARAMETER_COLUMNS, effect, parameter_table, ways
+from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.variations import of_material, spin_up_ways, steps_to, way_material
 from ratd.pipeline import blocks, io
-from ratd.pipeline.config import load
 from ratd.pipeline.jobs import Job
 
 PACE = {"epsilon": 0.2, "timestep_factor": 0.1}
@@ -115,12 +115,13 @@ class Killed(Exception):
 def job():
     """A job without Snakemake around it."""
     job = object.__new__(Job)
+    job._task = {"function": "of the test", "writes": ["disruption"]}
     job.log, job.provenance_of = logging.getLogger("test"), lambda settings, inputs: {"settings": repr(settings)}
     return job
 
 
 def test_ways_are_files_and_a_killed_job_keeps_its_finished_grains(job, tmp_path):
-    plan = load("config/config.yaml", "config/quick.yaml")
+    plan = load("config/config.yaml", "config/spin_up.yaml", "config/quick.yaml")
     changes = ({}, {"viscous_time": 1e-12})
     spin = {"drive": "prescribed", **PACE}
     how = [
