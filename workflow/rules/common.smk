@@ -1,4 +1,4 @@
-# What all rules need: the config read with a word on where it is wrong, and `task`, which names what a rule does.
+# What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
 import sys
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def checked(read, *arguments):
 
 
 def task(script, function, *writes):
-    """What a rule is to do, for its params: see `ratd.pipeline.jobs.task`."""
+    """The param that says what is to be done, see `ratd.pipeline.jobs.task`."""
     return jobs.task(
         Path(workflow.basedir, "workflow", "scripts", f"{script}.py"), function, *writes
     )
@@ -33,7 +33,7 @@ def task(script, function, *writes):
 
 def results_folder(config):
     """Folder of all results."""
-    return config["results"].rstrip("/") or "/"
+    return str(Path(config["results"]))
 
 
 def figure_input(name):

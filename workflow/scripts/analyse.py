@@ -1,4 +1,4 @@
-"""Make tables or texts from files: a dict, name of an output -> what it holds, is what the function of the rule gives."""
+"""Make tables or texts from files: the function of the rule gives a dict, name of an output -> what it holds."""
 
 from ratd.pipeline.jobs import Job
 
