@@ -165,9 +165,10 @@ class Job:
             Seeds of the grains, in the order in which they stand in the file. Where the rule has the wildcard `seeds`,
             those outside it are left out: a file of grains may hold more of them than a drive wants.
         make : callable
-            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.pipeline.io`). Below the path `checkpoint` it may
-            keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
-            has another name and is never found. If it raises RuntimeError the other grains are made all the same.
+            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.pipeline.blocks`). Below the path
+            `checkpoint` it may keep what it needs to go on in the middle of a grain; a file made with other source,
+            settings or inputs has another name and is never found. If it raises RuntimeError the other grains are made
+            all the same.
 
         Raises
         ------
@@ -203,7 +204,7 @@ class Job:
         make : callable
             ``make(waiting, done)`` computes the grains that are not finished yet, ``waiting``, a list of pairs of a
             block and a seed, in any order. It calls ``done(number, row)`` with the place in this list and the row
-            (see `ratd.pipeline.io`) of each grain that it has finished, or ``done(number, failure=reason)``.
+            (see `ratd.pipeline.blocks`) of each grain that it has finished, or ``done(number, failure=reason)``.
 
         Raises
         ------

@@ -46,7 +46,7 @@ def module_files(root=_ROOT):
         Dotted name, e.g. ``"ratd.laws.jkr"``, -> file; ``"ratd"`` is the package itself, and stands for its
         ``__init__.py`` as every package does.
     """
-    # The names are those of a listing: on a file system that ignores case, `ratd.Grain` is not the module `ratd.aggregates.grain`.
+    # The names are those of a listing, also on a file system that ignores case: `ratd.Engine` is no module.
     files = {}
     for path in sorted(root.rglob("*.py")):
         *folders, name = path.relative_to(root).with_suffix("").parts

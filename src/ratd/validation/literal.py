@@ -113,7 +113,7 @@ def _row(grain, share, **how):
 
 
 def _fastest(run, share, first_loss):
-    """Greatest `ratd.experiments.spin_up.solid.turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then.
+    """Greatest `turned_by_spins` before the first loss of mass, and by how much I_1 has grown by then.
 
     NaN where the only record before the loss is that of the grain at rest.
     """

@@ -1,10 +1,10 @@
 """How fast an aggregate can turn at most if its contacts hold sideways too.
 
-`ratd.experiments.spin_up.bound.cut_bound` lets each contact of a cut pull with its pull-off force F_C and no more. A contact also holds up
-to F_S = k_s zeta_c sideways before it slides, whatever its normal force, and pushes without limit. A cut whose
-contacts cannot bear the load with all of that cannot hold, so that the least omega of all cuts is a bound for the
-aggregate as it stands. Only torques are left out, which could make it less. Where F_S is above F_C, as for all monomers
-from 10 nm on of the materials of the paper, it lies above the cut bound.
+`ratd.experiments.spin_up.bound.cut_bound` lets each contact of a cut pull with its pull-off force F_C and no more. A
+contact also holds up to F_S = k_s zeta_c sideways before it slides, whatever its normal force, and pushes without
+limit. A cut whose contacts cannot bear the load with all of that cannot hold, so that the least omega of all cuts is a
+bound for the aggregate as it stands. Only torques are left out, which could make it less. Where F_S is above F_C, as
+for all monomers from 10 nm on of the materials of the paper, it lies above the cut bound.
 """
 
 import math

@@ -38,7 +38,7 @@ def eq27(a_eff, tensile_strength, density):
     References
     ----------
     Reissl et al. (2024), A&A 692, A60, Eq. 27; Hoang (2020), Galaxies 8, 52. It takes the solid sphere of the same mass
-    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (`ratd.experiments.spin_up.bound`).
+    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (see the module `bound`).
     """
     return 2.0 / np.asarray(a_eff) * np.sqrt(np.asarray(tensile_strength) / density)
 

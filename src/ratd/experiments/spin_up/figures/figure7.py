@@ -40,7 +40,8 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
     table : pandas.DataFrame
         What `ratd.experiments.spin_up.ensemble.grain_table` returns.
     fit : xarray.Dataset, optional
-        What `ratd.experiments.spin_up.ensemble.fit_ensemble` returns; its first reading of <a_mon> is drawn, where there is a fit.
+        What `ratd.experiments.spin_up.ensemble.fit_ensemble` returns; its first reading of <a_mon> is drawn, where
+        there is a fit.
     drive : str, optional
         Named in the title; default: what the table says.
     materials : optional

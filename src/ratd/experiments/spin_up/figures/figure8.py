@@ -45,8 +45,8 @@ def figure8(table, material="co-S", kind="BAM2", scaled_at=100e-9, drive=None, m
     materials : optional
         Table of materials, handed to `ratd.base.materials.get_material`.
     grown : pandas.DataFrame, optional
-        All grains as grown, also those that were not spun up: see `ratd.experiments.spin_up.tensile.predictions`; default: those of
-        `table`.
+        All grains as grown, also those that were not spun up: see `ratd.experiments.spin_up.tensile.predictions`;
+        default: those of `table`.
 
     Returns
     -------
