@@ -6,7 +6,7 @@ import xarray as xr
 from ratd.aggregates import files as grain_files
 from ratd.aggregates.grain import Grain
 from ratd.base.materials import MATERIALS, equilibrium_compression
-from ratd.experiments.spin_up import records
+from ratd.experiments.spin_up import run_files
 from ratd.experiments.spin_up.files import END_REASONS, RUN_VALUES
 from ratd.pipeline import blocks, io, kinds
 
@@ -65,6 +65,6 @@ def grains_file(path, seeds=(0, 1, 2), attributes=None):
 def runs_file(path):
     """Write a file of three runs of different length, the middle one with snapshots."""
     runs = [make_run(0), make_run(1, n_records=6, n_fragments=0, n_snapshots=2, n_monomers=5), make_run(2, 3, 7)]
-    rows = [records.run_row(run) for run in runs]
+    rows = [run_files.run_row(run) for run in runs]
     io.write(path, blocks.block(rows, "spinup", MATERIALS["q-S"], {"code_hash": "0123"}), "spinup")
     return runs

@@ -14,7 +14,7 @@ from files import grains_file, make_grain, make_run, runs_file
 from ratd.aggregates import files as grain_files
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up import records
+from ratd.experiments.spin_up import run_files
 from ratd.experiments.spin_up.ensemble import cell_statistics, fit_ensemble, grain_table, table3_dataset, table_dataset
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.tables import read_grain_columns
@@ -56,7 +56,7 @@ def test_a_material_of_the_user_comes_back(tmp_path):
 
 def test_runs_of_different_length_come_back_the_same(tmp_path):
     written = runs_file(tmp_path / "runs.nc")
-    read = records.read_runs(tmp_path / "runs.nc")
+    read = run_files.read_runs(tmp_path / "runs.nc")
     assert len(read) == 3
     for old, new in zip(written, read, strict=True):
         np.testing.assert_equal(new.attrs, old.attrs)
@@ -67,8 +67,8 @@ def test_runs_of_different_length_come_back_the_same(tmp_path):
 @pytest.mark.parametrize("snapshot_every", [0, 50])
 def test_a_real_run_comes_back_the_same(tmp_path, snapshot_every):
     run = spin_up(make_grain(n=4), epsilon=1.0, records=20, snapshot_every=snapshot_every)
-    io.write(tmp_path / "runs.nc", blocks.block([records.run_row(run)], "spinup", MATERIALS["q-S"]), "spinup")
-    (read,) = records.read_runs(tmp_path / "runs.nc")
+    io.write(tmp_path / "runs.nc", blocks.block([run_files.run_row(run)], "spinup", MATERIALS["q-S"]), "spinup")
+    (read,) = run_files.read_runs(tmp_path / "runs.nc")
     np.testing.assert_equal(read.attrs, run.attrs)
     xr.testing.assert_identical(read, run)
 
@@ -76,8 +76,8 @@ def test_a_real_run_comes_back_the_same(tmp_path, snapshot_every):
 def test_what_is_not_finite_comes_back_where_it_is_allowed(tmp_path):
     run = make_run()
     run["porosity"][1] = np.nan
-    io.write(tmp_path / "runs.nc", blocks.block([records.run_row(run)], "spinup", MATERIALS["q-S"]), "spinup")
-    assert np.isnan(records.read_runs(tmp_path / "runs.nc")[0]["porosity"].values).tolist() == [
+    io.write(tmp_path / "runs.nc", blocks.block([run_files.run_row(run)], "spinup", MATERIALS["q-S"]), "spinup")
+    assert np.isnan(run_files.read_runs(tmp_path / "runs.nc")[0]["porosity"].values).tolist() == [
         False,
         True,
         False,
@@ -98,11 +98,11 @@ def test_table_cells_and_fit_come_back(tmp_path):
         ("fit", fit),
     ):
         io.write(tmp_path / f"{kind}.nc", dataset, kind)
-    read = records.read_table(tmp_path / "table.nc")
+    read = run_files.read_table(tmp_path / "table.nc")
     assert read["missing_marks"].tolist() == table["missing_marks"].tolist()
     assert read["omega_disr"].tolist() == table["omega_disr"].tolist()
     assert read["seed"].tolist() == table["seed"].tolist()
-    assert records.read_fit(tmp_path / "fit.nc")["A"].equals(fit["A"])
+    assert run_files.read_fit(tmp_path / "fit.nc")["A"].equals(fit["A"])
     assert len(io.read(tmp_path / "cells.nc", "cells")["a_eff"]) == len(cells)
 
 
@@ -290,7 +290,7 @@ def test_wrong_content_is_not_written(file, change, said):
 
 
 def test_rows_that_do_not_belong_together_are_refused():
-    first, second = records.run_row(make_run(0)), records.run_row(make_run(1))
+    first, second = run_files.run_row(make_run(0)), run_files.run_row(make_run(1))
     second.attrs["drive"] = "literal"
     with pytest.raises(InputError, match="the same attributes"):
         blocks.block([first, second], "spinup", MATERIALS["q-S"])
@@ -309,7 +309,7 @@ def test_rows_that_do_not_belong_together_are_refused():
 )
 def test_row_that_is_not_one_of_its_kind_is_refused(change, said):
     with pytest.raises(InputError, match=said):
-        blocks.block([change(records.run_row(make_run()))], "spinup", MATERIALS["q-S"])
+        blocks.block([change(run_files.run_row(make_run()))], "spinup", MATERIALS["q-S"])
 
 
 def test_file_is_read_only_if_it_was_made_alike(tmp_path):

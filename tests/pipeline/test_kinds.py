@@ -67,7 +67,7 @@ def test_fingerprint_changes_with_its_own_kind_only(monkeypatch):
 
 @pytest.fixture
 def block(tmp_path):
-    rows = [records.run_row(make_run(seed)) for seed in range(2)]
+    rows = [run_files.run_row(make_run(seed)) for seed in range(2)]
     path = tmp_path / "runs.nc"
     io.write(path, blocks.block(rows, "spinup", MATERIALS["q-S"]), "spinup")
     return io.read(path, "spinup")

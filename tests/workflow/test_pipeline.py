@@ -9,7 +9,7 @@ import time
 import pytest
 import yaml
 
-from ratd.experiments.spin_up import records
+from ratd.experiments.spin_up import run_files
 from ratd.pipeline import io
 from ratd.pipeline.partial import partial_folder
 from ratd.pipeline.provenance import file_hash
@@ -72,7 +72,7 @@ def test_files_tell_what_they_were_made_with(finished):
     assert runs.attrs["input_hash"] == file_hash(finished.folder / GRAINS)
     assert '"epsilon":0.2' in runs.attrs["settings"] and "epsilon" not in grains.attrs["settings"]
     assert grains["seed"].values.tolist() == runs["seed"].values.tolist() == list(range(6))
-    snapshots = [run.sizes.get("snapshot", 0) > 0 for run in records.runs(runs)]
+    snapshots = [run.sizes.get("snapshot", 0) > 0 for run in run_files.runs(runs)]
     assert snapshots == [seed == 1 for seed in range(6)]
 
 

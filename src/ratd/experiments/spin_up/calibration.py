@@ -16,7 +16,7 @@ from ratd.base.errors import InputError
 from ratd.base.statistics import jackknife_error, slope_of
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.printed import PAPER
-from ratd.experiments.spin_up.records import read_runs
+from ratd.experiments.spin_up.run_files import read_runs
 from ratd.pipeline.kinds import Kind, as_dataset, entries, over, register
 
 __all__ = [

@@ -1,7 +1,7 @@
 """The marks of disruption of all grains of some files: the stage `disrupt` of the pipeline."""
 
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.records import runs
+from ratd.experiments.spin_up.run_files import runs
 from ratd.pipeline import io
 from ratd.pipeline.blocks import block, material_of
 

@@ -1,7 +1,7 @@
 """What the files of the spin-up hold: runs, marks of disruption, the ensemble, fragments.
 
 Only the pipeline imports this module, to find a kind of file (see `ratd.pipeline.kinds`): how such files are read
-stands in `ratd.experiments.spin_up.records`, which needs no compiled code.
+stands in `ratd.experiments.spin_up.run_files`, which needs no compiled code.
 """
 
 from ratd.experiments.spin_up import ensemble, fragmentation, marks, run

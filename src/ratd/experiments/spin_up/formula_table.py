@@ -6,7 +6,7 @@ from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.ensemble import size_key
 from ratd.experiments.spin_up.parameters import MARKS, beside_own
 from ratd.experiments.spin_up.printed import PAPER
-from ratd.experiments.spin_up.records import read_marks
+from ratd.experiments.spin_up.run_files import read_marks
 from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
 __all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table", "table"]

@@ -2,7 +2,7 @@
 
 from ratd.base.units import NM
 from ratd.experiments.spin_up import plan_check
-from ratd.experiments.spin_up.cells import cell_of, size_label
+from ratd.experiments.spin_up.seeds import cell_of, size_label
 from ratd.experiments.spin_up.settings import Settings
 from ratd.pipeline import config as configs
 

@@ -5,7 +5,7 @@ import math
 from ratd.aggregates.growth import MOST_MONOMERS, RadiusDistribution, smallest_a_eff
 from ratd.base.errors import InputError
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import cell_of
+from ratd.experiments.spin_up.seeds import cell_of
 
 __all__ = ["check"]
 

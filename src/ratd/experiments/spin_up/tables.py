@@ -9,7 +9,7 @@ from ratd.experiments.spin_up.ensemble import (
     table3_dataset,
     table_dataset,
 )
-from ratd.experiments.spin_up.records import read_marks
+from ratd.experiments.spin_up.run_files import read_marks
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 

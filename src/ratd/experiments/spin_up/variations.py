@@ -13,7 +13,7 @@ from ratd.engine.layout import DT
 from ratd.engine.state import new_state
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.records import run_row
+from ratd.experiments.spin_up.run_files import run_row
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.spin import told
 from ratd.pipeline.partial import Block

@@ -2,7 +2,7 @@
 
 from ratd.base.words import plural
 from ratd.experiments.spin_up.ensemble import cell_statistics
-from ratd.experiments.spin_up.records import read_table
+from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     TWO_COLUMNS,
     drive_of,

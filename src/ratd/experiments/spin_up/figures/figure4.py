@@ -6,7 +6,7 @@ from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.marks import LOSS, disruption
-from ratd.experiments.spin_up.records import read_runs
+from ratd.experiments.spin_up.run_files import read_runs
 from ratd.pictures.style import (
     GREY,
     HIGHLIGHT,

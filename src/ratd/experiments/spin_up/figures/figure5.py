@@ -5,7 +5,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.records import run_of_seed
+from ratd.experiments.spin_up.run_files import run_of_seed
 from ratd.pictures.snapshots import (
     FARTHEST,
     FORCES,

@@ -7,7 +7,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.beyond import oblate_counts
-from ratd.experiments.spin_up.records import read_table
+from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from ratd.base.materials import Material, get_material
 from ratd.base.words import plural
 from ratd.experiments.spin_up.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_statistics, eq33, radius_of_reading
-from ratd.experiments.spin_up.records import read_fit, read_grown, read_table
+from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,

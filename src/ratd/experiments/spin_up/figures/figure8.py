@@ -6,7 +6,7 @@ from ratd.base.materials import Material, get_material
 from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.ensemble import cell_statistics
-from ratd.experiments.spin_up.records import read_grown, read_table
+from ratd.experiments.spin_up.run_files import read_grown, read_table
 from ratd.experiments.spin_up.tensile import SCALINGS, predictions
 from ratd.pictures.style import (
     GREY,

@@ -1,7 +1,7 @@
 """The page on which the grain of figure 5 is turned and steps through its disruption."""
 
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.records import run_of_seed
+from ratd.experiments.spin_up.run_files import run_of_seed
 from ratd.pictures.grain_page import grain_page
 
 __all__ = ["page"]
