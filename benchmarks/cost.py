@@ -25,7 +25,7 @@ import numpy as np
 
 from benchmarks import machine, tables
 from ratd import grow, spin_up
-from ratd.aggregates.growth import RadiusDistribution
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.experiments.spin_up.bound import cut_bound

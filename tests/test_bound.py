@@ -7,7 +7,7 @@ import naive_geometry as naive
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow, grow_with_radii
 from ratd.base.errors import InputError
-from ratd.base.materials import equilibrium_compression, get_material, pull_off_force
+from ratd.base.materials import get_material
 from ratd.experiments.spin_up.bound import (
     contact_strengths,
     cut_bound,
@@ -19,6 +19,7 @@ from ratd.experiments.spin_up.bound import (
     tensile_strength_tatsuuma2019,
 )
 from ratd.geometry.shape import principal_axes
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force
 
 
 def small_grain(type, n, seed):

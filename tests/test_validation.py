@@ -25,11 +25,12 @@ from scipy.stats import kstest
 import ratd
 from ratd.aggregates.growth import grow
 from ratd.base.markdown import markdown_table, measured, measured_range
-from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.base.materials import MATERIALS
 from ratd.base.statistics import mean_of, median_of
 from ratd.drives.rotating import angular_velocity, make_drive
 from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.solid import solid_omega, spin_share, turned_by_spins
+from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import schema
 from ratd.pipeline.provenance import provenance
 from ratd.validation import (

@@ -12,8 +12,8 @@ import numpy as np
 
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
-from ratd.base.materials import pull_off_force, reduced_radius
 from ratd.geometry.shape import centre_of_mass, principal_axes
+from ratd.laws.contact_constants import pull_off_force, reduced_radius
 
 __all__ = [
     "contact_strengths",

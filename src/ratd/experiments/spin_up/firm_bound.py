@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.base.materials import equilibrium_contact_radius, reduced_radius
 from ratd.experiments.spin_up.bound import contact_strengths, plane_normals
 from ratd.geometry.shape import centre_of_mass, principal_axes
+from ratd.laws.contact_constants import equilibrium_contact_radius, reduced_radius
 from ratd.laws.tangential import sliding_limit, sliding_stiffness
 
 __all__ = ["FIRM_BOUND_COLUMNS", "bridge_pulls", "firm_bound", "least_firm_bridge", "least_firm_plane", "slide_forces"]

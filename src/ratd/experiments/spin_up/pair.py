@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ratd.base.materials import equilibrium_compression, pull_off_force, reduced_radius
 from ratd.drives.rotating import make_drive
 from ratd.engine.advance import FEW_CONTACTS, advance
 from ratd.engine.layout import OMEGA
 from ratd.engine.state import new_state
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
 
 __all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega"]
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.aggregates.growth import grow
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
 from ratd.engine.state import new_state
