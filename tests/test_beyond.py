@@ -6,20 +6,19 @@ import pytest
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.beyond import (
-    MONOMER_CLASSES,
-    SEPARATE,
-    binomial_interval,
-    cross_validation,
+from ratd.base.statistics import binomial_interval
+from ratd.experiments.spin_up.cross_validation import SEPARATE, cross_validation
+from ratd.experiments.spin_up.eq33 import (
+    PAPER_MEAN_RADIUS,
+    eq33,
     eq33_omega,
+    fit_ensemble,
     fitted_numbers,
-    fragment_shares,
-    oblate_counts,
-    power_law,
-    size_law,
-    slopes,
+    radius_of_reading,
 )
-from ratd.experiments.spin_up.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
+from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, fragment_shares, power_law
+from ratd.experiments.spin_up.oblateness import oblate_counts
+from ratd.experiments.spin_up.size_law import size_law, slopes
 from synthetic_runs import make_table
 
 SIZES = tuple(50e-9 * k for k in range(1, 9))

@@ -10,22 +10,19 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
-from ratd.experiments.spin_up.ensemble import (
-    COLUMNS,
+from ratd.experiments.spin_up.cells import cell_statistics, sort_cells
+from ratd.experiments.spin_up.eq33 import (
     TABLE_3,
-    cell_statistics,
     eq33,
     fit_as_configured,
     fit_ensemble,
-    grain_table,
     radius_of_reading,
-    sort_cells,
-    spin_share,
     table3,
     table3_dataset,
-    table_dataset,
 )
+from ratd.experiments.spin_up.grain_table import COLUMNS, grain_table, table_dataset
 from ratd.experiments.spin_up.marks import VARIABLES, disruption
+from ratd.geometry.shape import spin_share
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 100e-9, 200e-9)
@@ -328,12 +325,12 @@ def test_sparse_ensembles_say_what_is_missing(table):
 
 
 def test_material_of_ones_own(table):
-    rows = table[table["material"] == "q-S"].assign(material="ice")
-    with pytest.raises(InputError, match="ice"):
+    rows = table[table["material"] == "q-S"].assign(material="snow")
+    with pytest.raises(InputError, match="snow"):
         fit_ensemble(rows)
     q_s = get_material("q-S")
-    ice = Material("ice", 4 * q_s.surface_energy, q_s.youngs_modulus, q_s.poisson_number, q_s.density)
-    best = fit_ensemble(rows, n_bootstrap=5, materials={"ice": ice})
+    ice = Material("snow", 4 * q_s.surface_energy, q_s.youngs_modulus, q_s.poisson_number, q_s.density)
+    best = fit_ensemble(rows, n_bootstrap=5, materials={"snow": ice})
     expected = fit_ensemble(table[table["material"] == "q-S"], n_bootstrap=5)
     np.testing.assert_allclose(best["A"].values, expected["A"].values / 2, rtol=1e-12)
 

@@ -13,7 +13,7 @@ import ratd
 from ratd.base.materials import MATERIALS
 from ratd.engine.layout import DT_DRIFT, VX, WX, X
 from ratd.engine.state import monomer_rows, new_state
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import relax
 from ratd.laws.contact_constants import (
     equilibrium_compression,

@@ -21,7 +21,7 @@ from ratd.engine.advance import FULL, advance
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, INERTIA, MASS, RADIUS, STEPS, TIME, VX, VY, WZ, X, Y
 from ratd.engine.state import State, monomer_rows, with_room
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import relax
 from ratd.geometry.neighbours import connected_components
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius

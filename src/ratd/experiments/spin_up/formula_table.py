@@ -3,7 +3,7 @@
 import pandas as pd
 
 from ratd.base.statistics import median_of
-from ratd.experiments.spin_up.ensemble import size_key
+from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.parameters import MARKS, beside_own
 
 __all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table"]
@@ -71,7 +71,7 @@ def formula_effects(table, mark):
     table : pandas.DataFrame
         From `formula_table`.
     mark : str
-        One of `ratd.experiments.spin_up.parameters.MARKS`.
+        One of `parameters.MARKS`.
 
     Returns
     -------
