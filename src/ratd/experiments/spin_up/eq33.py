@@ -177,29 +177,24 @@ def fit_ensemble(
             for k, reading in enumerate(readings.values()):
                 for key, value in _fit_one(rows, mark, material, reading, drawn, confidence).items():
                     result[key][k, i, j] = value
-    fit = xr.Dataset(
+    attrs = {"drive": drive, "mark": mark, "equation": _EQUATION, "n_bootstrap": n_bootstrap, "confidence": confidence}
+    attrs |= {"bootstrap_seed": seed, "missing_fits": "; ".join(missing)}
+    variables = {name: (values, _FIT_MEANING[name]) for name, values in result.items()}
+    variables |= {"n_grains": (n_grains, "grains in the fit"), "n_sizes": (n_sizes, "sizes in the fit")}
+    dims = "mean_radius", "material", "type"
+    return xr.Dataset(
+        # the counts are the same for every reading of the mean radius
+        {name: (dims[-v.ndim :], v, {"units": "1", "long_name": words}) for name, (v, words) in variables.items()},
         coords={
             "mean_radius": ("mean_radius", list(readings), {"long_name": "<a_mon> in Eq. 33"}),
             "material": ("material", materials_here, {"long_name": "material"}),
             "type": ("type", types_here, {"long_name": "growth"}),
         },
-        attrs={
-            "drive": drive,
-            "mark": mark,
-            "equation": "omega = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, Reissl et al. (2024), Eq. 33",
-            "n_bootstrap": n_bootstrap,
-            "confidence": confidence,
-            "bootstrap_seed": seed,
-            "missing_fits": "; ".join(missing),
-        },
+        attrs=attrs,
     )
-    for name, values in result.items():
-        fit[name] = (("mean_radius", "material", "type"), values, {"units": "1", "long_name": _FIT_MEANING[name]})
-    fit["n_grains"] = (("material", "type"), n_grains, {"units": "1", "long_name": "grains in the fit"})
-    fit["n_sizes"] = (("material", "type"), n_sizes, {"units": "1", "long_name": "sizes in the fit"})
-    return fit
 
 
+_EQUATION = "omega = A/a_eff sqrt(gamma/(rho <a_mon>)) (N_con phi)^alpha, Reissl et al. (2024), Eq. 33"
 _FIT_MEANING = {
     "A": "fit parameter A of Eq. 33",
     "A_low": "lower end of the confidence interval of A",

@@ -89,9 +89,9 @@ def slopes(table, mark="omega_disr", split=SPLIT):
     -------
     pandas.DataFrame
         A row a type: below, above, change (above - below) with `_error` (`ratd.base.statistics.slope_error`, NaN where
-        a side has too few grains for one); sizes_below, sizes_above, n_grains. Materials are taken together, each with a
         a side has too few grains for one); sizes_below, sizes_above, n_grains. Materials are taken together, each with
         a level of its own, and all cells of a side count alike. NaN where a side has fewer than two sizes.
+    """
     table = table[table[mark].astype(float) > 0]
     rows = []
     for kind, part in table.groupby("type", sort=False):
