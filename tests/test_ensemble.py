@@ -22,7 +22,6 @@ from ratd.experiments.spin_up.eq33 import (
 )
 from ratd.experiments.spin_up.grain_table import COLUMNS, grain_table, table_dataset
 from ratd.experiments.spin_up.marks import VARIABLES, disruption
-from ratd.geometry.shape import spin_share
 from synthetic_runs import make_run, make_table
 
 SIZES = (50e-9, 100e-9, 200e-9)
@@ -399,10 +398,3 @@ def test_tables_as_datasets_survive_netcdf(tmp_path, table, fit):
     assert cells["omega_disr_mean"].attrs["units"] == "rad s-1"
     assert cells["omega_disr_count"].attrs["units"] == "1"
     assert cells["n_contacts_maximum"].attrs["long_name"] == "maximum of: number of contacts"
-
-
-def test_share_of_the_spins_of_two_equal_spheres():
-    # each 2/5 m a^2 of its own, and m a^2 for its way around the middle
-    a, density = 30e-9, 2000.0
-    mass = 4 / 3 * np.pi * density * a**3
-    assert spin_share([a, a], density, 2 * (0.4 + 1.0) * mass * a**2) == pytest.approx(0.8 / 2.8)
