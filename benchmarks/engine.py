@@ -11,7 +11,7 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, OMEGA, STEPS, TIME
 from ratd.engine.state import State, new_state, with_room
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import TIMESTEP_FACTOR, relax
 
 EPSILON = 1e-9

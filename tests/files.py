@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
-from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.base.materials import MATERIALS
+from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import io, schema
 
 

@@ -2,7 +2,6 @@
 
 import csv
 import math
-import os
 import shutil
 import subprocess
 import sys
@@ -10,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ratd.cuda import device
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError
 
 ROOT = Path(__file__).parents[1]
 
@@ -23,11 +21,10 @@ def benchmarks(monkeypatch):
     monkeypatch.syspath_prepend(ROOT)
 
 
-def command(*words, environment=None):
+def command(*words):
     return subprocess.run(
         [sys.executable, "-m", "benchmarks", *map(str, words)],
         cwd=ROOT,
-        env=os.environ | (environment or {}),
         capture_output=True,
         text=True,
         check=False,
@@ -82,26 +79,6 @@ def test_cost_has_every_cell_in_both_paces_and_sums_up(results):
         assert math.isclose(float(total["core_hours"]), sum(own), rel_tol=1e-4)
 
 
-def test_gpu_is_measured_where_there_is_one_and_else_said_to_be_missing(tmp_path):
-    """In numba's simulation of a device."""
-    words = ("gpu", "--quick", "--out", tmp_path)
-    done = command(*words, environment={"NUMBA_ENABLE_CUDASIM": "1"})
-    assert done.returncode == 0, done.stderr
-    table = rows(tmp_path / "gpu.csv")
-    assert {(row["type"], row["grains"]) for row in table} == {("BAM2", "1"), ("BA", "1")}
-    for row in table:
-        work = int(row["steps"]) * int(row["grains"]) * int(row["contacts"])
-        assert math.isclose(float(row["ns_per_contact_step"]), float(row["seconds"]) / work * 1e9, rel_tol=1e-4)
-    (paper,) = rows(tmp_path / "gpu_paper.csv")
-    assert (paper["type"], paper["grains"], paper["steps"]) == ("BA", "2", "40")
-    assert "## On a GPU" in (tmp_path / "README.md").read_text()
-    try:
-        device.require()
-    except InputError as error:
-        done = command(*words)
-        assert done.returncode == 1 and done.stderr == f"error: {error}\n"
-
-
 def test_projection_multiplies_only_what_grows_with_the_steps(benchmarks, monkeypatch):
     from benchmarks import cost
 
@@ -135,10 +112,11 @@ def test_profile_divides_all_steps_among_its_bands(tmp_path):
 
 def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     from benchmarks import report
+    from benchmarks.goals import goals
 
-    assert report.goals(tmp_path) == []
+    assert goals(tmp_path) == []
     (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
-    (goal,) = report.goals(tmp_path)
+    (goal,) = goals(tmp_path)
     assert "up to 100 nm" in goal.what and (goal.unit, goal.limit, goal.greatest) == ("%", 10.0, True)
     assert goal.value == pytest.approx(10.0)
     readme = tmp_path / "own.md"
@@ -165,9 +143,9 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     ],
 )
 def test_a_projected_goal_is_judged_by_its_range(greatest, value, span, found, verdict):
-    from benchmarks import report
+    from benchmarks.goals import Goal
 
-    goal = report.Goal("cost", "h", value, 50.0, greatest, *span)
+    goal = Goal("cost", "h", value, 50.0, greatest, *span)
     assert (goal.found, goal.verdict) == (found, verdict)
 
 

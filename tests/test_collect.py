@@ -14,8 +14,8 @@ from ratd.reproduction.kept import read_kept
 from files import make_run
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up.ensemble import GRAIN_COLUMNS, grain_table, table_dataset
 from ratd.experiments.spin_up.fragmentation import FRAGMENT_COLUMNS
+from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, grain_table, table_dataset
 from ratd.pipeline import io
 from ratd.pipeline.config import load, merge
 

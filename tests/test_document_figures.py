@@ -15,7 +15,7 @@ from ratd.validation.show import lammps, literal
 
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, calibrate
-from ratd.experiments.spin_up.ensemble import cell_of
+from ratd.experiments.spin_up.cells import cell_of
 from ratd.experiments.spin_up.figures import calibration
 from ratd.experiments.spin_up.figures.calibration import SPREAD
 from ratd.experiments.spin_up.fragmentation import STAGES

@@ -14,7 +14,7 @@ from ratd.engine.contacts import contact_energies
 from ratd.engine.forces import SCRATCH_SIZE, contact_forces, forces_between
 from ratd.engine.measure import dissipated, total_stress
 from ratd.engine.state import contact_blocks, contact_field, monomer_rows
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import _advance, relax
 from ratd.validation.free_grain import VELOCITY, kinetic_energy, shaken, state_of, with_field
 

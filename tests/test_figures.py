@@ -21,13 +21,13 @@ from matplotlib.transforms import Bbox
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.bound import tensile_strength_tatsuuma2019
-from ratd.experiments.spin_up.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import TABLE_3, eq33, fit_ensemble
 from ratd.experiments.spin_up.figures import figure2, figure4, figure6, figure7, figure8, figure10, save
 from ratd.experiments.spin_up.figures.figure6 import axis_ratios
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.pair import force_controlled_omega
-from ratd.experiments.spin_up.tensile import predictions
+from ratd.experiments.spin_up.pairs import force_controlled_omega
+from ratd.experiments.spin_up.tensile import predictions, tensile_strength_tatsuuma2019
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,

@@ -12,7 +12,7 @@ from ratd.reproduction.bounds import table3_omega
 from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import Answer, Row
 
-from ratd.experiments.spin_up.beyond import slopes
+from ratd.experiments.spin_up.size_law import slopes
 from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, TURNING
 from synthetic_runs import make_run, make_table, marked
 

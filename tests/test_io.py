@@ -13,7 +13,9 @@ import xarray as xr
 from files import grains_file, make_grain, make_run, runs_file
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up.ensemble import cell_statistics, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import fit_ensemble, table3_dataset
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.experiments.spin_up.run import spin_up
 from ratd.pipeline import io, schema
 

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from ratd.base.materials import (
-    MATERIALS,
+from ratd.base.materials import MATERIALS
+from ratd.laws import jkr, tangential
+from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.laws import jkr, tangential
 
 MATERIAL = MATERIALS["q-S"]
 RADII = [(30e-9, 30e-9), (10e-9, 100e-9), (100e-9, 10e-9)]

@@ -13,9 +13,10 @@ from ratd.reproduction.pair_test import (
 
 import ratd
 from ratd import spin_up
-from ratd.base.materials import MATERIALS, equilibrium_compression, reduced_radius
+from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
-from ratd.experiments.spin_up.pair import eq35_omega, force_controlled_omega
+from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 
 
 def pairs_of(*radii, material="q-S"):

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 from ratd.reproduction.recommended import BY_TYPE, NAMES, SURE, recommended_section
 
-from ratd.experiments.spin_up.beyond import PREDICTORS, SPLIT, size_law_unit
+from ratd.experiments.spin_up.cross_validation import PREDICTORS
+from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
 from synthetic_runs import make_table
 
 SIZES = (100e-9, 300e-9, 500e-9)

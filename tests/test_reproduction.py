@@ -21,11 +21,12 @@ from ratd.reproduction.text import Answer, Row, between, number, over, row_table
 
 from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up.bound import midplane_bound
-from ratd.experiments.spin_up.ensemble import TABLE_3, eq33, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.experiments.spin_up.eq33 import TABLE_3, eq33, fit_ensemble, table3_dataset
 from ratd.experiments.spin_up.figures import save
 from ratd.experiments.spin_up.formula_table import FORMULAE
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.experiments.spin_up.solid import solid_omega
+from ratd.experiments.spin_up.tensile import midplane_bound
 from ratd.geometry.shape import porosity, semi_axes
 from ratd.pipeline import io
 from ratd.pipeline.config import load

@@ -9,12 +9,13 @@ import xarray as xr
 
 import ratd
 from ratd.aggregates.growth import grow
-from ratd.base.materials import MATERIALS, equilibrium_compression, reduced_radius
+from ratd.base.materials import MATERIALS
 from ratd.engine.layout import COMPRESSION, DT
 from ratd.engine.state import contact_field
 from ratd.experiments.spin_up import run as spinup
 from ratd.experiments.spin_up.run import _edge, relax, spin_up
 from ratd.geometry.shape import inertia_tensor
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 
 
 def pair(material, a_i, a_j):

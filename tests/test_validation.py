@@ -25,11 +25,12 @@ from scipy.stats import kstest
 import ratd
 from ratd.aggregates.growth import grow
 from ratd.base.markdown import markdown_table, measured, measured_range
-from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.base.materials import MATERIALS
 from ratd.base.statistics import mean_of, median_of
 from ratd.drives.rotating import angular_velocity, make_drive
 from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
-from ratd.experiments.spin_up.solid import solid_omega, spin_share, turned_by_spins
+from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
+from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import schema
 from ratd.pipeline.provenance import provenance
 from ratd.validation import (
@@ -504,7 +505,7 @@ def test_the_spins_share_of_a_pair():
     """Two equal spheres that touch: 2 x 2/5 m a^2 over that and 2 m a^2."""
     a = 20e-9
     pair = ratd.Grain([[-a, 0, 0], [a, 0, 0]], [a, a], "q-S")
-    assert spin_share(pair) == pytest.approx(0.8 / 2.8, rel=1e-9)
+    assert pair.shape.spin_share == pytest.approx(0.8 / 2.8, rel=1e-9)
 
 
 def test_a_solid_grain_under_the_printed_equations():
@@ -557,7 +558,7 @@ def test_stretching_explains_only_what_it_changes():
 def test_spins_turn_a_grain_slower_as_it_stretches():
     """A grain that only turns has the kinetic energy L Omega/2, with the angular momentum L = I_spin omega."""
     grain = grow("BA", 100e-9, "q-S", 0)
-    share = spin_share(grain)
+    share = grain.shape.spin_share
     run = ratd.spin_up(grain, drive="literal", coriolis="exact", angular_acceleration=1e15, timestep_factor=0.2)
     first_loss = float(ratd.disruption(run)["omega_first_loss"])
     run = run.isel(record=(run["omega"].values > 0.1 * first_loss) & (run["omega"].values < first_loss))

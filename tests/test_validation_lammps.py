@@ -10,17 +10,17 @@ import pytest
 from ratd.validation.show import lammps as show_lammps
 
 import ratd
-from ratd.base.materials import (
-    MATERIALS,
+from ratd.base.materials import MATERIALS
+from ratd.engine.layout import DT_DRIFT, VX, WX, X
+from ratd.engine.state import monomer_rows, new_state
+from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.run import relax
+from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.engine.layout import DT_DRIFT, VX, WX, X
-from ratd.engine.state import monomer_rows, new_state
-from ratd.experiments.spin_up.bound import cut_bound
-from ratd.experiments.spin_up.run import relax
 from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, compression_of
 from ratd.validation import lammps, peer_lammps
 from ratd.validation.plan import EXTENTS, Plan

@@ -13,8 +13,8 @@ from ratd.reproduction.paper import PRINTED
 from ratd.reproduction.text import all_of, lies_in, near
 from ratd.validation.show.convergence import large_shifts, rate_exponent
 
-from ratd.experiments.spin_up.ensemble import grain_table, table_dataset
 from ratd.experiments.spin_up.figures.figure10 import REFERENCE
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.pipeline import io
 from ratd.pipeline.config import load
 from ratd.pipeline.schema import END_REASONS

@@ -1,13 +1,8 @@
 """Tabulate all grains, average them per cell, and fit Eq. 33 beside Table 3."""
 
-from ratd.experiments.spin_up.ensemble import (
-    cell_statistics,
-    fit_as_configured,
-    grain_table,
-    table3,
-    table3_dataset,
-    table_dataset,
-)
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import fit_as_configured, table3, table3_dataset
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.pipeline import io
 from ratd.pipeline.jobs import Job
 

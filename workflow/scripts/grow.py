@@ -1,8 +1,9 @@
 """Grow the grains of one block."""
 
-from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.aggregates.growth import grow
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.pipeline import io
 from ratd.pipeline.jobs import Job
 

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from ratd.base.materials import Material
-from ratd.experiments.spin_up.pair import pairs
+from ratd.experiments.spin_up.pairs import pairs
 from ratd.pipeline import io
 from ratd.pipeline.jobs import Job
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.growth import grow
-from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.base.materials import get_material
 from ratd.drives.rotating import AT_REST
 from ratd.engine.advance import STEPS_DONE, advance
 from ratd.engine.contacts import contact_energies
@@ -27,6 +27,7 @@ from ratd.engine.layout import (
 )
 from ratd.engine.measure import dissipated
 from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 from ratd.laws.tangential import TWISTING_LIMIT
 from ratd.validation.free_grain import SPIN, VELOCITY, go_on, momenta, shaken, with_field
 from ratd.validation.tables import table_kind

@@ -15,7 +15,7 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
 from ratd.engine.measure import dissipated
 from ratd.engine.state import monomer_rows
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import relax
 from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, go_on, turn
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind

@@ -15,15 +15,16 @@ from dataclasses import replace
 import numpy as np
 
 from ratd.aggregates.growth import grow
-from ratd.base.materials import equilibrium_compression, get_material, pull_off_force, reduced_radius
+from ratd.base.materials import get_material
 from ratd.drives.rotating import AT_REST
 from ratd.engine.advance import FULL, advance
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, INERTIA, MASS, RADIUS, STEPS, TIME, VX, VY, WZ, X, Y
 from ratd.engine.state import State, monomer_rows, with_room
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import relax
 from ratd.geometry.neighbours import connected_components
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
 from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, S_TOUCH, compression_of, contact_state, normal_force
 from ratd.validation import peer_lammps
 from ratd.validation.peer_lammps import Spheres, stable_step

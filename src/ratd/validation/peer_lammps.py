@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ratd.base.errors import InputError
-from ratd.base.materials import equilibrium_contact_radius, pull_off_force, reduced_radius
+from ratd.laws.contact_constants import equilibrium_contact_radius, pull_off_force, reduced_radius
 from ratd.laws.jkr import damping_coefficient
 from ratd.laws.tangential import (
     TWISTING_LIMIT,

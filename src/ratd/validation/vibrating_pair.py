@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from ratd.base.materials import equilibrium_compression, pull_off_force, reduced_radius
 from ratd.drives.rotating import angular_velocity, make_drive
-from ratd.experiments.spin_up.pair import holding_omega
+from ratd.experiments.spin_up.pairs import holding_omega
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
 from ratd.laws.jkr import (
     COMPRESSION_END,
     S_END,

@@ -3,8 +3,8 @@
 import pandas as pd
 
 from ratd.base.statistics import median_of
-from ratd.experiments.spin_up.ensemble import size_key
-from ratd.experiments.spin_up.parameters import MARKS, beside_own
+from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.parameters import beside_own, marks_row
 
 __all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table"]
 
@@ -33,7 +33,6 @@ FORMULA_COLUMNS = {
     "omega_mass_75_ratio": ("1", "omega_mass_75 over that of the same grain in the consistent model"),
 }
 """Units and meaning of the columns of `formula_table`."""
-_GRAIN = ("material", "type", "drive", "a_eff", "seed")
 
 
 def formula_table(files):
@@ -54,11 +53,7 @@ def formula_table(files):
     InputError
         If a grain was not spun up in the consistent model.
     """
-    rows = [
-        {"formula": formula} | {name: one.attrs[name] for name in _GRAIN} | {name: float(one[name]) for name in MARKS}
-        for formula, grains in files
-        for one in grains
-    ]
+    rows = [{"formula": formula} | marks_row(marks) for formula, grains in files for marks in grains]
     table = pd.DataFrame(rows, columns=list(FORMULA_COLUMNS))
     return beside_own(table, table["formula"] == OWN, "the consistent model")
 
@@ -71,7 +66,7 @@ def formula_effects(table, mark):
     table : pandas.DataFrame
         From `formula_table`.
     mark : str
-        One of `ratd.experiments.spin_up.parameters.MARKS`.
+        One of `parameters.MARKS`.
 
     Returns
     -------

@@ -6,7 +6,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ratd.base.markdown import plural
 from ratd.base.units import NM
-from ratd.experiments.spin_up.beyond import oblate_counts
+from ratd.experiments.spin_up.oblateness import oblate_counts
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,
@@ -30,7 +30,7 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+        What `grain_table` returns.
     material : str
         Material shown.
     sizes : sequence of float

@@ -26,7 +26,7 @@ def formulae(table):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.formula_table.formula_table` returns.
+        What `formula_table` returns.
 
     Returns
     -------

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.aggregates.growth import grow
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
 from ratd.engine.state import new_state
@@ -65,9 +66,9 @@ def spin_up_ways(job, targets, ways, kind, row):
     targets : list of path-like
         The files.
     ways : list of dict
-        One a file: ``grain`` (material, type, a_eff, radii, migration, from `ratd.pipeline.config.Plan.grow`), ``changed``
-        (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments of
-        `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
+        One a file: ``grain`` (material, type, a_eff, radii, migration, from `ratd.pipeline.config.Plan.grow`),
+        ``changed`` (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments
+        of `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
     kind : str
         Kind of the files, a key of `ratd.pipeline.schema.KINDS`.
     row : callable
