@@ -44,12 +44,10 @@ class Pair:
         m_i, m_j = (4 / 3 * pi * self.rho * r**3 for r in (r_i, r_j))
         I_i, I_j = 0.4 * m_i * r_i**2, 0.4 * m_j * r_j**2
         self.m_red, self.I_red = m_i * m_j / (m_i + m_j), I_i * I_j / (I_i + I_j)
-        # JKR
         self.r0 = (9 * pi * self.gamma * self.R**2 / self.E_star) ** (1 / 3)
         self.F_C = 3 * pi * self.gamma * self.R
         self.delta_0 = self.r0**2 / (3 * self.R)
         self.t0 = 0.95 * sqrt(self.rho) * (2 * self.R) ** (7 / 6) / (self.E_star ** (1 / 3) * self.gamma ** (1 / 6))
-        # DMT
         self.K = 2 / 3 * Y / (1 - self.nu**2) * sqrt(self.R)
         self.f_adh = 4 * pi * self.gamma * self.R
         self.delta_eq = (self.f_adh / self.K) ** (2 / 3)
@@ -98,8 +96,9 @@ class JKR:
     def x(self, pair, delta):
         """r/r0 on the stable branch of delta/delta_0 = 3x^2 - 2 sqrt(x)."""
         y = delta / pair.delta_0
-        f = lambda x: 3 * x * x - 2 * sqrt(x) - y  # noqa: E731
-        return self.x_end if f(self.x_end) >= 0 else brentq(f, self.x_end, 2 + sqrt(abs(y)), xtol=1e-15, rtol=1e-14)
+        if y <= 3 * self.x_end**2 - 2 * sqrt(self.x_end):
+            return self.x_end
+        return brentq(lambda x: 3 * x * x - 2 * sqrt(x) - y, self.x_end, 2 + sqrt(abs(y)), xtol=1e-15, rtol=1e-14)
 
     def normal(self, pair, delta):
         x = self.x(pair, delta)
@@ -129,11 +128,9 @@ class JKR:
         return {"sliding": across(w, n), "rolling": pair.R * (state["n_i"] + state["n_j"]), "twisting": state["phi"]}
 
     def potential(self, pair, state, delta, n):
-        energy = dict.fromkeys(MODES, 0.0) | {"normal": self.normal_potential(pair, delta)}
-        if self.friction:
-            z, k = self.displacements(pair, state, n), self.constants(pair)
-            energy |= {mode: 0.5 * k[mode][0] * float(np.dot(z[mode], z[mode])) for mode in MODES[1:]}
-        return energy
+        z, k = self.displacements(pair, state, n), self.constants(pair)
+        energy = {mode: 0.5 * k[mode][0] * float(np.dot(z[mode], z[mode])) * bool(self.friction) for mode in k}
+        return energy | {"normal": self.normal_potential(pair, delta)}
 
     def force(self, pair, state, delta, n, v, w_i, w_j):
         c, rate = self.c(pair, delta), -(v @ n)
@@ -205,9 +202,7 @@ class DMT:
         return pair.K * (pair.T_vis if self.A is None else self.A) * sqrt(delta)
 
     def constants(self, pair, delta):
-        """(spring, greatest displacement, greatest force or torque), a^2 = delta R.
-
-        The rolling spring is per displacement, so its torque is R k xi."""
+        """(spring, greatest displacement, greatest force or torque), a^2 = delta R; the torque of rolling is R k xi."""
         a, p = sqrt(delta * pair.R), pair
         k_s, k_r, k_t = 8 * a * p.G / (2 * (2 - p.nu)), 8 * pi * p.gamma, 8 / 3 * p.G * a**3
         return {
@@ -217,11 +212,9 @@ class DMT:
         }
 
     def potential(self, pair, state, delta, n):
-        energy = dict.fromkeys(MODES, 0.0) | {"normal": self.normal_potential(pair, delta)}
-        if self.friction == "spring":
-            for mode, (k, _, _) in self.constants(pair, delta).items():
-                energy[mode] = 0.5 * k * float(np.dot(state[mode], state[mode]))
-        return energy
+        k = self.constants(pair, delta)  # the state stays 0 unless friction is 'spring'
+        energy = {mode: 0.5 * k[mode][0] * float(np.dot(state[mode], state[mode])) for mode in k}
+        return energy | {"normal": self.normal_potential(pair, delta)}
 
     def rates(self, pair, d, n, v, w_i, w_j):
         l_i, l_j = pair.r_i * d / (pair.r_i + pair.r_j), pair.r_j * d / (pair.r_i + pair.r_j)

@@ -17,17 +17,24 @@ def unit(*v):
 
 # laws of a pair
 
+END = -1.5 * (1 / 6) ** (1 / 3)  # -0.82548
+STATES = [  # r/r0, delta/delta_0, F/F_C
+    ((2 / 3) ** (2 / 3), 0, -8 / 9),
+    (1, 1, 0),
+    (0.25 ** (1 / 3), -0.396850, -1),
+    ((1 / 6) ** (2 / 3), END, -5 / 9),
+]
 
-@pytest.mark.parametrize(
-    "x, delta, force", [((2 / 3) ** (2 / 3), 0, -8 / 9), (1, 1, 0), (0.25 ** (1 / 3), -0.397, -1), (0.3029, -0.82548, -5 / 9)]
-)
+
+@pytest.mark.parametrize("x, delta, force", STATES)
 def test_jkr_states(x, delta, force):
     p, law = Pair(ICE, 1e-7, 0.6e-7), JKR()
-    assert law.normal(p, delta * p.delta_0) / p.F_C == pytest.approx(force, abs=1e-4)
-    assert law.x(p, delta * p.delta_0) == pytest.approx(x, abs=2e-3)
-    whole = quad(lambda d: law.normal(p, d), -0.8254 * p.delta_0, delta * p.delta_0)[0]
-    closed = law.normal_potential(p, delta * p.delta_0) - law.normal_potential(p, -0.8254 * p.delta_0)
-    assert closed == pytest.approx(whole, abs=1e-7 * p.F_C * p.delta_0)
+    assert law.normal(p, delta * p.delta_0) / p.F_C == pytest.approx(force, abs=1e-6)
+    assert law.x(p, delta * p.delta_0) == pytest.approx(x, abs=1e-6)
+    whole = quad(lambda y: law.normal(p, y * p.delta_0) / p.F_C, END, delta, epsabs=1e-11)[0]
+    closed = law.normal_potential(p, delta * p.delta_0) - law.normal_potential(p, END * p.delta_0)
+    assert closed / (p.F_C * p.delta_0) == pytest.approx(whole, abs=1e-9)
+    assert not law.ends(p, 0.99999 * END * p.delta_0) and law.ends(p, 1.00001 * END * p.delta_0)
 
 
 def test_jkr_numbers():
@@ -53,8 +60,8 @@ N = unit(1.0, -0.4, 0.3)
 def strained(law, pair, size=0.5):
     """State below all limits, as found by a small motion of unequal spheres."""
     state, delta = law.start(pair, N), pair.delta_0 if isinstance(law, JKR) else pair.delta_eq
-    spins = size * 0.03 * np.array([[0.5, 1.0, -0.7], [-0.3, 0.2, 0.4]])
-    slip = 3e-2 * size * pair.r0 * across(np.array([0.3, 0.5, 1.0]), N)
+    spins = size * 0.002 * np.array([[0.5, 1.0, -0.7], [-0.3, 0.2, 0.4]])
+    slip = 2e-2 * size * pair.r0 * across(np.array([0.3, 0.5, 1.0]), N)
     slip = slip + np.cross(pair.r_i * spins[0] + pair.r_j * spins[1], N)
     law.advance(pair, state, delta, delta, N, N, slip, *spins, 1.0)
     return state, delta
@@ -100,17 +107,18 @@ def test_cut_back_leaves_other_modes_alone():
     assert lost == {}  # pointers know spins only, and neither n nor they have moved
     for mode, w_i in (("rolling", 0.05 * unit(*across(np.ones(3), N))), ("twisting", 0.05 * N)):
         w_j = -w_i * pair.r_i / pair.r_j if mode == "rolling" else -w_i  # no sliding
+        state = law.start(pair, N)
         lost = law.advance(pair, state, delta, delta, N, N, np.zeros(3), w_i, w_j, 1.0)
         assert set(lost) == {mode}
         z = law.displacements(pair, state, N)
-        assert np.linalg.norm(z[mode]) == pytest.approx(limit[mode], rel=1e-3)
+        assert np.linalg.norm(z[mode]) == pytest.approx(limit[mode], rel=5e-3)  # made unit again
         assert np.linalg.norm(z["sliding"]) < 0.05 * limit["sliding"]
     # w_i r_i = w_j r_j slides without rolling when w_i = w_j
     state = law.start(pair, N)
     w = 0.03 * unit(*across(np.ones(3), N))
     assert set(law.advance(pair, state, delta, delta, N, N, np.zeros(3), w, w, 1.0)) == {"sliding"}
     z = law.displacements(pair, state, N)
-    assert np.linalg.norm(z["sliding"]) == pytest.approx(limit["sliding"], rel=1e-3)
+    assert np.linalg.norm(z["sliding"]) == pytest.approx(limit["sliding"], rel=5e-3)
     assert np.linalg.norm(z["rolling"]) < 0.05 * limit["rolling"]
 
 
@@ -160,8 +168,10 @@ def parts(pair, A, speed):
 
     rim.terminal = trapped.terminal = True
     rim.direction = trapped.direction = -1
-    scales, until = [1e-6 * pair.delta_eq, 1e-6 * speed], (0, 1e3 * pair.period)
-    return len(solve_ivp(motion, until, [0, speed], "LSODA", events=(rim, trapped), rtol=1e-9, atol=scales).t_events[0]) > 0
+    accuracy = {"rtol": 1e-9, "atol": [1e-6 * pair.delta_eq, 1e-6 * speed]}
+    way = solve_ivp(motion, (0, 1e3 * pair.period), [0, speed], "LSODA", events=(rim, trapped), **accuracy)
+    assert way.status == 1
+    return len(way.t_events[0]) > 0
 
 
 def sticking_speed(pair, A):
@@ -206,7 +216,8 @@ def three(law, material, size, speed, **more):
     """Two spheres of unequal size hit a third off centre, all spinning."""
     radius = np.array([1, 0.7, 1.3]) * size
     x = np.zeros((3, 3))
-    x[1], x[2] = (radius[0] + radius[1]) * 1.0005 * unit(0.92, 0.39, 0.2), (radius[0] + radius[2]) * 1.0005 * unit(0.3, -1, 0.1)
+    x[1] = (radius[0] + radius[1]) * 1.0005 * unit(0.92, 0.39, 0.2)
+    x[2] = (radius[0] + radius[2]) * 1.0005 * unit(0.3, -1, 0.1)
     u = np.array([[0, 0, 0], [-1, 0.1, 0.2], [0.2, 0.9, -0.3]]) * speed
     w = np.random.default_rng(1).normal(size=(3, 3)) * speed / size * 0.5
     return run(x, radius, u, w, material, law=law, every=20, **more)
@@ -218,7 +229,7 @@ CASES = [  # law, material, size, speed, dt, steps, residuals over the start's k
     (JKR("none", friction=False), ICE, 1e-7, 10.0, 0.02 * T0, 500, 4e-3, 4e-3),
     (DMT(friction="none"), SILICA, 5e-7, 1.0, 20e-12, 1000, 1.5e-3, 1.5e-3),
     (DMT(friction="velocity"), SILICA, 5e-7, 1.0, 20e-12, 1000, 1.5e-3, 1.5e-3),
-    (DMT(friction="spring"), SILICA, 5e-7, 1.0, 20e-12, 1000, 1.5e-3, 2e-2),
+    (DMT(friction="spring"), SILICA, 5e-7, 1.0, 20e-12, 1000, 1.5e-3, 2.5e-2),
 ]
 
 
@@ -226,7 +237,7 @@ CASES = [  # law, material, size, speed, dt, steps, residuals over the start's k
 def test_momenta_and_energy(law, material, size, speed, dt, steps, whole, pages):
     """The rest of the balance is the half kick of the jump of the force at first touch, linear in dt.
 
-    DMT springs without 'stiffness': 0.8 % of the start's energy is missing here."""
+    DMT springs without 'stiffness': up to 2.1 % of the start too much in the impact, 0.8 % too little after."""
     out = three(law, material, size, speed, dt=dt, steps=steps)
     start = out["kinetic"]["translation"][0] + out["kinetic"]["spin"][0]
     assert out["contacts"].max() == 2
@@ -234,6 +245,7 @@ def test_momenta_and_energy(law, material, size, speed, dt, steps, whole, pages)
         assert abs(out[key] - out[key][0]).max() < 1e-12 * abs(out[key]).max()
     assert abs(out["residual"]).max() < whole * start
     assert abs(out["residual_pages"]).max() < pages * start
+    assert abs(out["residual_pages"][-1]) < min(pages, 1e-2) * start
     if law.friction == "spring":
         assert abs(out["residual_pages"]).max() > 3e-3 * start
     if law.friction not in (False, "none"):
@@ -288,15 +300,16 @@ def test_shift_changes_nothing_and_sliding_adds_no_pressure():
     b = run(x + 0.3 * box.length, 1e-7, u, w, ICE, box=box, **more)
     assert a["contacts"][-1] > 8
     assert b["pressure"] == pytest.approx(a["pressure"], rel=1e-6, abs=1e-6 * abs(a["pressure"]).max())
-    assert abs(a["momentum"] - a["momentum"][0]).max() < 1e-12 * abs(a["momentum"]).max() or True
+    carried = a["momentum"] * a["length"][:, None]  # sum m u falls like 1/L
+    assert abs(carried - carried[0]).max() < 1e-12 * abs(carried).max()
     scale = a["dissipated"]["made"][-1] + a["work"]["box"][-1]
     assert abs(a["residual"]).max() < 1e-2 * scale
     s = a["system"]
     normal = 0.0
     for key in s.state:
-        delta, n = s.pose(key)
-        v = s.u[key[0]] - s.u[key[1]] + s.H * s.separation(key)
-        normal += np.linalg.norm(s.separation(key)) * (s.law.normal(s.pair(key), delta) - s.law.c(s.pair(key), delta) * (v @ n))
+        pair, (delta, n), d = s.pair(key), s.pose(key), s.separation(key)
+        v = s.u[key[0]] - s.u[key[1]] + s.H * d
+        normal += (d @ n) * (s.law.normal(pair, delta) - s.law.c(pair, delta) * (v @ n))
     kinetic = 2 * a["kinetic"]["translation"][-1]
     assert np.trace(a["pressure"][-1]) == pytest.approx((kinetic + normal) / s.L**3, rel=1e-3)
 
