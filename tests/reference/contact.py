@@ -59,9 +59,7 @@ class Pair:
 def turn(v, angle):
     """v turned by the vector `angle` (Rodrigues)."""
     size = np.linalg.norm(angle)
-    if size == 0:
-        return np.array(v, float)
-    e = angle / size
+    e = angle / (size or 1.0)
     return v * np.cos(size) + np.cross(e, v) * np.sin(size) + e * (e @ v) * (1 - np.cos(size))
 
 

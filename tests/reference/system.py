@@ -43,8 +43,7 @@ class System:
         return self.pairs[radii]
 
     def separation(self, key):
-        image = self.L * np.array(key[2:]) if self.box else 0.0
-        return self.x[key[0]] - self.x[key[1]] + image
+        return self.x[key[0]] - self.x[key[1]] + (self.L * np.array(key[2:]) if self.box else 0.0)
 
     def pose(self, key):
         """delta, n of a contact."""
@@ -109,8 +108,8 @@ class System:
                 change = {"broken": held}
             else:  # mean velocity: the way from pose to pose over dt
                 v = (self.separation(key) - (pair.r_i + pair.r_j - delta_0) * n_0) / dt
-                poses = delta_0, delta, n_0, n
-                change = self.law.advance(pair, self.state[key], *poses, v, self.w[i], self.w[j], dt)
+                motion = delta_0, delta, n_0, n, v, self.w[i], self.w[j], dt
+                change = self.law.advance(pair, self.state[key], *motion)
             lost = {k: lost.get(k, 0.0) + change.get(k, 0.0) for k in lost.keys() | change.keys()}
         lost["made"] = self.find()
         u, w = self.u / half, self.w
@@ -130,7 +129,8 @@ def run(position, radius, velocity, spin, material, *, law, box=None, dt, steps,
     - kinetic: translation, spin; potential by mode; dissipated by mode, with 'stiffness' (see DMT.advance);
     - momentum, angular_momentum; length; contacts (number); pressure [P_ab] with peculiar velocities;
     - work: 'box', -int P dV, and 'body', of the force of 'as_printed';
-    - residual: (energy + dissipated - work) - start [J]; residual_pages leaves 'stiffness' out.
+    - residual: (energy + dissipated - work) - start [J]; residual_pages leaves 'stiffness' out. 'made' is -U at the
+      first position with delta >= 0, so the half kick of the new force, F v dt/2 for each new contact, stays in it.
     """
     s = System(position, radius, velocity, spin, material, law, box, contacts)
     lost, work, out = dict.fromkeys(LOST, 0.0), {"box": 0.0, "body": 0.0}, []
