@@ -8,8 +8,27 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.engine.layout import (
-    FASTEST, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, INV_INERTIA, INV_MASS, MONOMERS, ROW, TORQUE_X, TORQUE_Y, TORQUE_Z,
-    VX, VY, VZ, WX, WY, WZ, X, Y, Z,
+    FASTEST,
+    FORCE_ROW,
+    FORCE_X,
+    FORCE_Y,
+    FORCE_Z,
+    INV_INERTIA,
+    INV_MASS,
+    MONOMERS,
+    ROW,
+    TORQUE_X,
+    TORQUE_Y,
+    TORQUE_Z,
+    VX,
+    VY,
+    VZ,
+    WX,
+    WY,
+    WZ,
+    X,
+    Y,
+    Z,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)

@@ -14,8 +14,34 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.engine.fragments import drop, label_fragments, note_lost
 from ratd.engine.layout import (
-    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, INERTIA, INV_INERTIA, INV_MASS, MASS,
-    MONOMERS, RADIUS, ROW, STEPS, TIME, TORQUE_X, TORQUE_Y, TORQUE_Z, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
+    CLOCK,
+    DRIVEN,
+    FASTEST,
+    FORCE_ROW,
+    FORCE_X,
+    FORCE_Y,
+    FORCE_Z,
+    INERTIA,
+    INV_INERTIA,
+    INV_MASS,
+    MASS,
+    MONOMERS,
+    RADIUS,
+    ROW,
+    STEPS,
+    TIME,
+    TORQUE_X,
+    TORQUE_Y,
+    TORQUE_Z,
+    VX,
+    VY,
+    VZ,
+    WX,
+    WY,
+    WZ,
+    X,
+    Y,
+    Z,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
@@ -330,6 +356,7 @@ def turn_to_take_out(excess, last_excess, last_unwind):
     if last_excess == last_excess:
         put_in = excess - last_excess - last_unwind
     return -excess - put_in
+
 
 @jit
 def centre(state):

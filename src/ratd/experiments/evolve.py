@@ -142,13 +142,18 @@ def evolve(
     else:
         parts = (law, box, integrator)
         state = new_state(
-            position, radius, materials, np.zeros((0, 2), dtype=np.int64), *parts, velocity=velocity, spin=spin, kind=kind
+            position,
+            radius,
+            materials,
+            np.zeros((0, 2), dtype=np.int64),
+            *parts,
+            velocity=velocity,
+            spin=spin,
+            kind=kind,
         )
         if contacts is None:
             contacts = far_pairs(state, box, position, radius, 0.0)
-        state = new_state(
-            position, radius, materials, contacts, *parts, velocity=velocity, spin=spin, kind=kind
-        )
+        state = new_state(position, radius, materials, contacts, *parts, velocity=velocity, spin=spin, kind=kind)
         rows = [_row(state, law, box, None)]
     start = saved = told = clock.monotonic()
     begun = len(rows)
@@ -193,7 +198,9 @@ def _materials(material, n):
     if not isinstance(material, list | tuple):
         return [get_material(material)], np.zeros(n, dtype=np.int64)
     if len(material) != n:
-        raise InputError(f"material is a list of {len(material)}; it must be one for all, or one for each of {n} spheres.")
+        raise InputError(
+            f"material is a list of {len(material)}; it must be one for all, or one for each of {n} spheres."
+        )
     each = [get_material(one) for one in material]
     materials = list(dict.fromkeys(each))
     return materials, np.array([materials.index(one) for one in each], dtype=np.int64)

@@ -14,7 +14,22 @@ from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.laws.contact_fields import (
-    DVX, DVY, DVZ, DX, DY, DZ, FX, FY, FZ, LANES, VXX, VXY, VXZ, VYY, VYZ, VZZ,
+    DVX,
+    DVY,
+    DVZ,
+    DX,
+    DY,
+    DZ,
+    FX,
+    FY,
+    FZ,
+    LANES,
+    VXX,
+    VXY,
+    VXZ,
+    VYY,
+    VYZ,
+    VZZ,
 )  # fmt: skip
 
 __all__ = ["SCHEMES", "Open", "Periodic", "open_space", "periodic"]

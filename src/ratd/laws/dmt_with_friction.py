@@ -13,11 +13,44 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.fastmath import reciprocal, reciprocal_root, rough_reciprocal_root
 from ratd.base.jit import jit
-from ratd.laws.contact_constants import reduced_radius
 from ratd.base.parts import part
+from ratd.laws.contact_constants import reduced_radius
 from ratd.laws.contact_fields import (
-    A_I, A_J, COMMON, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FX, FY, FZ, NCX, NCY,
-    NCZ, NORMAL, STEP, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
+    A_I,
+    A_J,
+    COMMON,
+    DAMPING_RATE,
+    DVX,
+    DVY,
+    DVZ,
+    DX,
+    DY,
+    DZ,
+    E_DAMP,
+    E_ROLL,
+    E_SLIDE,
+    E_TWIST,
+    FX,
+    FY,
+    FZ,
+    NCX,
+    NCY,
+    NCZ,
+    NORMAL,
+    STEP,
+    TIX,
+    TIY,
+    TIZ,
+    TJX,
+    TJY,
+    TJZ,
+    WIX,
+    WIY,
+    WIZ,
+    WJX,
+    WJY,
+    WJZ,
+    law_fields,
 )  # fmt: skip
 
 FRICTIONS = ("none", "velocity", "spring")

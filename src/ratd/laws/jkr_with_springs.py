@@ -13,16 +13,52 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.fastmath import reciprocal, reciprocal_root
 from ratd.base.jit import jit
+from ratd.base.parts import part
 from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.base.parts import part
 from ratd.laws.contact_fields import (
-    A_I, A_J, COMMON, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FX, FY, FZ, NCX, NCY,
-    NCZ, NORMAL, STEP, SX, SY, SZ, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
+    A_I,
+    A_J,
+    COMMON,
+    DAMPING_RATE,
+    DVX,
+    DVY,
+    DVZ,
+    DX,
+    DY,
+    DZ,
+    E_DAMP,
+    E_ROLL,
+    E_SLIDE,
+    E_TWIST,
+    FX,
+    FY,
+    FZ,
+    NCX,
+    NCY,
+    NCZ,
+    NORMAL,
+    STEP,
+    SX,
+    SY,
+    SZ,
+    TIX,
+    TIY,
+    TIZ,
+    TJX,
+    TJY,
+    TJZ,
+    WIX,
+    WIY,
+    WIZ,
+    WJX,
+    WJY,
+    WJZ,
+    law_fields,
 )  # fmt: skip
 from ratd.laws.johnson_kendall_roberts import (
     COMPRESSION_END,

@@ -127,8 +127,11 @@ def contact_time(reduced_mass, reduced_radius, reduced_modulus, surface_energy):
     """
     radius = 2.0 * reduced_radius
     density = 2.0 * reduced_mass / (4.0 / 3.0 * math.pi * radius**3)
-    return 0.95 * radius ** (7.0 / 6.0) * math.sqrt(density) / (
-        reduced_modulus ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0)
+    return (
+        0.95
+        * radius ** (7.0 / 6.0)
+        * math.sqrt(density)
+        / (reduced_modulus ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
     )
 
 

@@ -4,14 +4,15 @@ import time
 
 import numpy as np
 
-from ratd.base.errors import InputError
 from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
 from ratd.drives.rotating import OMEGA_RAT, SPIN_UP_LAWS, rotating
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import STEPS
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, run as go_on, until
+from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, until
+from ratd.engine.step import run as go_on
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.records import RECORDS, Watch, dataset, edge_of_record, let_go, record, snapshot
