@@ -7,8 +7,8 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, clear_contacts, update_contact_rates
 from ratd.engine.layout import (
-    COUNTERS, CONTACTS, DRIVEN, DT_DRIFT, DRIVE_SCALARS, FORCE_ROW, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW,
-    SCALARS, VX, WX, X,
+    COUNTERS, CONTACTS, DRIVEN, DT_DRIFT, DRIVE_SCALARS, FORCE_ROW, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS,
+    RADIUS, ROW, SCALARS, VX, WX, X,
 )  # fmt: skip
 from ratd.laws.contact_fields import LANES, VECTOR
 from ratd.laws.material_pair import material_row
