@@ -15,8 +15,8 @@ from ratd.base.parts import part
 from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
 from ratd.engine.fragments import drop, label_fragments, note_lost
 from ratd.engine.layout import (
-    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS, TIME,
-    TORQUE_X, VX, VY, VZ, WX, X, Y, Z,
+    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    TIME, TORQUE_X, VX, VY, VZ, WX, X, Y, Z,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
