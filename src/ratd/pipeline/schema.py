@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import (
+from ratd.base.errors import FileError
+from ratd.experiments.spin_up import (
     calibration,
     composition,
     ensemble,
@@ -23,9 +24,8 @@ from ratd import (
     marks,
     pair,
     parameters,
-    spinup,
 )
-from ratd.base.errors import FileError
+from ratd.experiments.spin_up import run as spinup
 
 FORMAT = 1
 """Version of the layout of the files. Raise it when `ratd.pipeline.io` lays out the same variables in another way."""
