@@ -1,7 +1,7 @@
 """Tabulate all grains of the config as grown, those too that no drive spins up."""
 
 from ratd.pipeline import io
-from ratd.experiments.spin_up.ensemble import grain_table, table_dataset
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.pipeline.jobs import Job
 
 with Job(snakemake) as job:

@@ -16,7 +16,7 @@ from ratd.engine.lists import far_pairs
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space
-from ratd.laws import jkr
+from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS, mean_pressure_tensor
