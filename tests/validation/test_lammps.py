@@ -9,22 +9,25 @@ import pytest
 
 import ratd
 from ratd.base.materials import MATERIALS
-from ratd.engine.layout import DT_DRIFT, VX, WX, X
+from ratd.engine.layout import VX, WX, X
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import relax
+from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, compression_of
+from ratd.laws.jkr_with_springs import jkr
+from ratd.laws.johnson_kendall_roberts import COMPRESSION_END, S_PULL_OFF, compression_of
 from ratd.validation import lammps, peer_lammps
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.tables import read_tables, write_table
 
-CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
+CONFIG = Path(__file__).parents[2] / "config" / "validation.yaml"
 
 
 def installed():
@@ -130,8 +133,7 @@ def move_a_pair(mode, speed, duration, material=MATERIALS["q-S"]):
     def joined(velocity, spin):
         return np.concatenate([velocity, spin * RADII[:, None]]) / speed
 
-    state = new_state(position, RADII, material, np.array([[0, 1]]), timestep_factor=0.001)
-    state.scalar[DT_DRIFT] = 0.0
+    state = new_state(position, RADII, material, np.array([[0, 1]]), jkr(), open_space(), leapfrog(timestep_factor=0.001))
     grain = lammps.InRatd(state, 0.001)
     rows = monomer_rows(grain._state)
     rows[:, VX : VX + 3], rows[:, WX : WX + 3] = velocity, spin
