@@ -363,7 +363,8 @@ def test_literal_drive():
     assert [row["drive"] for row in rows] == ["prescribed"] + ["literal"] * 6
     table = pd.DataFrame(rows)
     true, share = table.loc[0, ["omega_first_loss", "spin_share"]]
-    explicit, exact = (table[(table["drive"] == "literal") & (table["coriolis"] == how)] for how in ("explicit", "exact"))
+    of_literal = table[table["drive"] == "literal"]
+    explicit, exact = (of_literal[of_literal["coriolis"] == how] for how in ("explicit", "exact"))
     solid = [solid_omega(true, share, *how)[0] for how in explicit[["angular_acceleration", "timestep"]].values]
     np.testing.assert_allclose(explicit["omega_first_loss"], solid, rtol=0.05)
     parts = (explicit["angular_acceleration"] / explicit["timestep"]) ** (1 / 3) * share / true

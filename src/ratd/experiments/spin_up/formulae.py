@@ -55,7 +55,8 @@ def printed_factors(formula, poisson_number):
 
     Notes
     -----
-    Printed over ours: G/(2 - 2 nu^2) over G/(2 (2 - nu)) (Eq. 13); 1 - nu over 2 - nu; G/(2 - 2 nu^2) over G/2 (Eq. 17).
+    Printed over ours: G/(2 - 2 nu^2) over G/(2 (2 - nu)) (Eq. 13); 1 - nu over 2 - nu; G/(2 - 2 nu^2) over G/2
+    (Eq. 17).
     """
     nu = poisson_number
     factors = {
