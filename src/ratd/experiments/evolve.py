@@ -15,7 +15,7 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, touching_pairs
-from ratd.laws import jkr
+from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
