@@ -34,7 +34,8 @@ from ratd.engine.layout import (
 )  # fmt: skip
 
 WORK = 1
-"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]."""
+"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]; where it is `as_printed` also that of
+the force -m H^2 x."""
 KINETIC = 2
 """... six numbers: sum of m u_a u_b over the monomers in the last step (xx, yy, zz, xy, xz, yz) [J]."""
 SUM_STEPS = 8
@@ -95,6 +96,7 @@ def _move(state, box, kick, dt):
     fastest = 0.0
     xx, yy, zz, xy, xz, yz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bx, by, bz = 0.0, 0.0, 0.0
+    work = 0.0
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
@@ -106,13 +108,18 @@ def _move(state, box, kick, dt):
         bx += m * vx * vx
         by += m * vy * vy
         bz += m * vz * vz
-        vx = vx * ux + pull * force[q + FORCE_X]
-        vy = vy * uy + pull * force[q + FORCE_Y]
-        vz = vz * uz + pull * force[q + FORCE_Z]
+        ox, oy, oz = vx * ux, vy * uy, vz * uz
+        vx = ox + pull * force[q + FORCE_X]
+        vy = oy + pull * force[q + FORCE_Y]
+        vz = oz + pull * force[q + FORCE_Z]
         if printed:
-            vx -= kick * hx * hx * (x - lx * math.floor(x / lx + 0.5))
-            vy -= kick * hy * hy * (y - ly * math.floor(y / ly + 0.5))
-            vz -= kick * hz * hz * (z - lz * math.floor(z / lz + 0.5))
+            px = -kick * hx * hx * (x - lx * math.floor(x / lx + 0.5))
+            py = -kick * hy * hy * (y - ly * math.floor(y / ly + 0.5))
+            pz = -kick * hz * hz * (z - lz * math.floor(z / lz + 0.5))
+            vx += px
+            vy += py
+            vz += pz
+            work += 0.5 * m * (px * (ox + vx) + py * (oy + vy) + pz * (oz + vz))
         vx *= ux
         vy *= uy
         vz *= uz
@@ -138,7 +145,6 @@ def _move(state, box, kick, dt):
     before = (bx, by, bz)
     factor = (ux * ux, uy * uy, uz * uz)
     rate = (hx, hy, hz)
-    work = 0.0
     for axis in range(3):
         # Kinetic energy that the factors give, before the kick and after it, and the work on the contacts.
         work += 0.5 * (before[axis] * (factor[axis] - 1.0) + after[axis] * (1.0 - 1.0 / factor[axis]))
