@@ -14,7 +14,8 @@ from ratd.engine.layout import (
 from ratd.observables.pressure import volume
 
 WORK = 1
-"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]."""
+"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]; where it is `as_printed` also that of
+the force -m H^2 x."""
 SUM_STEPS = 2
 """... steps since the means were last taken."""
 SUM_TENSOR = 3
@@ -73,7 +74,7 @@ def _move(state, box, kick, dt):
     grow = vector4(math.exp(0.5 * hx * dt), math.exp(0.5 * hy * dt), math.exp(0.5 * hz * dt), 1.0)
     printed = box.as_printed
     nothing = vector4(0.0, 0.0, 0.0, 0.0)
-    before4, after4, shear4 = nothing, nothing, nothing
+    before4, after4, shear4, body4 = nothing, nothing, nothing, nothing
     fastest = 0.0
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
@@ -82,13 +83,16 @@ def _move(state, box, kick, dt):
         x = load4(monomer, r + X)
         v = load4(monomer, r + VX)
         before4 = add4(before4, multiply4(scale4(m, v), v))
-        v = add4(multiply4(slow, v), scale4(kick * monomer[r + INV_MASS], load4(force, q + FORCE_X)))
+        slowed = multiply4(slow, v)
+        v = add4(slowed, scale4(kick * monomer[r + INV_MASS], load4(force, q + FORCE_X)))
         if printed:
             x1, y1, z1 = monomer[r + X], monomer[r + Y], monomer[r + Z]
             pull_x = -kick * hx * hx * (x1 - lx * math.floor(x1 / lx + 0.5))
             pull_y = -kick * hy * hy * (y1 - ly * math.floor(y1 / ly + 0.5))
             pull_z = -kick * hz * hz * (z1 - lz * math.floor(z1 / lz + 0.5))
-            v = add4(v, vector4(pull_x, pull_y, pull_z, 0.0))
+            pulled = vector4(pull_x, pull_y, pull_z, 0.0)
+            v = add4(v, pulled)
+            body4 = add4(body4, multiply4(scale4(0.5 * m, pulled), add4(slowed, v)))
         v = multiply4(slow, v)
         turn = kick * monomer[r + INV_INERTIA]
         w = add4(load4(monomer, r + WX), scale4(turn, load4(force, q + TORQUE_X)))
@@ -108,7 +112,8 @@ def _move(state, box, kick, dt):
     before = (bx, by, bz)
     factor = (ux * ux, uy * uy, uz * uz)
     rate = (hx, hy, hz)
-    work = 0.0
+    work_x, work_y, work_z, _ = numbers4(body4)
+    work = work_x + work_y + work_z
     for axis in range(3):
         # Kinetic energy that the factors give, before the kick and after it, and the work on the contacts.
         work += 0.5 * (before[axis] * (factor[axis] - 1.0) + after[axis] * (1.0 - 1.0 / factor[axis]))

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, contact_start, get_image, remove_contact, update_contact_rates
 from ratd.engine.layout import (
@@ -164,9 +165,13 @@ def run(state, law, drive, box, integrator, until):
 
     Raises
     ------
+    InputError
+        If neither a contact nor an option says how long a step is.
     RuntimeError
         If a velocity is no finite number.
     """
+    if not state.scalar[DT] > 0.0:
+        raise InputError("timestep is not given; a single sphere needs one, since it has no contact to take it from.")
     while True:
         code = advance(state, law, drive, box, integrator, until)
         if code == NOT_FINITE:

@@ -134,8 +134,9 @@ def evolve(
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
     settings = (materials, law, box, drive, integrator, float(duration), int(records))
-    arrays = [array for array in (position, radius, velocity, spin, kind, contacts) if array is not None]
-    key = checkpoints.fingerprint(arrays, *settings)
+    inputs = (position, radius, velocity, spin, kind, contacts)
+    given = [array is not None for array in inputs]
+    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows = loaded[0], list(loaded[1]["rows"])

@@ -151,7 +151,8 @@ def _push_and_damp(contact, scratch, start, count, dt, constant):
     for lane in range(count):
         q = np.uint64(lane)
         k = start + q
-        s = contact_state(contact[COMPRESSION + k], contact[S + k])
+        # beyond the end of the branch there is no root: Newton's steps would run away
+        s = contact_state(max(contact[COMPRESSION + k], COMPRESSION_END), contact[S + k])
         normal = normal_force(s, contact[PULL_OFF + k])
         contact[S + k] = s
         contact[NORMAL + k] = normal
