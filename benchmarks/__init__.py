@@ -1,7 +1,7 @@
 """Speed of ratd: the kernel beside LAMMPS, what each part of the paper costs, how cost grows with size.
 
     python -m benchmarks                    # everything, in the folder of the repository
-    python -m benchmarks kernel             # one part: kernel, cost, scaling or pipeline
+    python -m benchmarks kernel             # one part: kernel, cost, scaling, pipeline or profile
     python -m benchmarks --quick --out /tmp/b    # a tiny run that shows that it works; its numbers mean nothing
 
 machine  what it runs on: processor, memory, one core, versions
@@ -11,5 +11,10 @@ peer     LAMMPS timed on the same aggregate
 kernel   part (a): both in alternation, and grains of ten monomers
 cost     part (b): cost of every cell of the config, and of the whole paper
 scaling  part (c): time and memory from 10 to 30 000 monomers
-report   tables and figures from the CSV files of the parts
+pipeline part (d): what the pipeline adds to the work over small sizes
+profile  part (e): where the steps of a spin-up go, only where it is asked for by its name
+tables   CSV files of the parts
+goals    what was aimed at, beside what was found
+report   text and tables of the README, from the CSV files
+figures  what is drawn in it
 """

@@ -80,89 +80,105 @@ def say(text):
 
 
 def _measure(arguments):
+    """Measure the parts that are asked for, then write the report; returns the exit status."""
     parts = arguments.parts or PARTS
-    unknown = [part for part in parts if part not in PARTS + ON_REQUEST]
-    if unknown:
-        raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS + ON_REQUEST)}.")
-    for name in ("pairs", "steps", "coarse", "seeds"):
-        if getattr(arguments, name) < 1:
-            raise InputError(f"--{name} is {getattr(arguments, name)}; it must be at least 1.")
-    quick = arguments.quick
-    if quick and arguments.out is None:
-        raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
+    _check(arguments, parts)
     out = arguments.out or HERE / "results"
     about = {
         "machine": machine.processor(),
         "software": machine.software(),
         "load": round(machine.load(), 2),
         "pinned": machine.pin(arguments.core),
-        "quick": "yes" if quick else "no",
+        "quick": "yes" if arguments.quick else "no",
     }
     say(f"{about['machine']}, {about['pinned']}, load {about['load']}; {about['software']}")
-    complete = True
-    if "kernel" in parts:
-        program = None if arguments.no_lammps else peer.find(arguments.lammps)
-        if arguments.lammps and program is None:
-            raise InputError(f"--lammps is {arguments.lammps!r}, which is no program that can be run.")
-        if program is None and not arguments.no_lammps:
-            say(peer.NOT_FOUND)
-        kernel.measure(
-            out,
-            pairs=2 if quick else arguments.pairs,
-            steps=100 if quick else arguments.steps,
-            monomers=60 if quick else 2000,
-            small_steps=1000 if quick else 50 * arguments.steps,
-            files=arguments.aggregate,
-            program=program,
-            about=about,
-            say=say,
-        )
-    if "cost" in parts:
-        plan = _plan(arguments.config, quick)
-        complete = cost.measure(
-            out,
-            plan,
-            drives=arguments.drive or list(DRIVES),
-            coarse=dict.fromkeys(DRIVES, arguments.coarse),
-            full_below=arguments.full_below,
-            seeds=2 if quick else arguments.seeds,
-            minutes=arguments.minutes,
-            about=about,
-            say=say,
-        )
-    if "scaling" in parts:
-        scaling.measure(
-            out,
-            numbers=scaling.NUMBERS[:3] if quick else scaling.NUMBERS,
-            repeats=2 if quick else 5,
-            updates=1e4 if quick else 4e7,
-            about=about,
-            say=say,
-        )
-    if "pipeline" in parts:
-        plan = _plan(arguments.config, quick)
-        small = [size for size in plan.sizes[::-1] if float(size) <= arguments.small]
-        if not small:
-            raise InputError(
-                f"--small is {arguments.small:g}; it must be at least the smallest size, {plan.sizes[-1]}."
-            )
-        pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
-    if "profile" in parts:
-        plan = _plan(arguments.config, quick)
-        sizes = PROFILED if not quick else plan.sizes
-        profile.measure(out, plan, sizes=sizes, about=about, say=say)
+    # only the cost tells whether it is complete
+    complete = [_MEASURE[part](arguments, out, about) for part in _MEASURE if part in parts]
     report.write(out)
     if arguments.out is None:
         report.quote(out, ROOT / "README.md")
     say(f"written: {out / 'README.md'}")
-    return 0 if complete else 3
+    return 3 if False in complete else 0
 
 
-def _plan(paths, quick):
+def _check(arguments, parts):
+    unknown = [part for part in parts if part not in PARTS + ON_REQUEST]
+    if unknown:
+        raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS + ON_REQUEST)}.")
+    for name in ("pairs", "steps", "coarse", "seeds"):
+        if getattr(arguments, name) < 1:
+            raise InputError(f"--{name} is {getattr(arguments, name)}; it must be at least 1.")
+    if arguments.quick and arguments.out is None:
+        raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
+
+
+def _kernel(arguments, out, about):
+    program = None if arguments.no_lammps else peer.find(arguments.lammps)
+    if arguments.lammps and program is None:
+        raise InputError(f"--lammps is {arguments.lammps!r}, which is no program that can be run.")
+    if program is None and not arguments.no_lammps:
+        say(peer.NOT_FOUND)
+    quick = arguments.quick
+    kernel.measure(
+        out,
+        pairs=2 if quick else arguments.pairs,
+        steps=100 if quick else arguments.steps,
+        monomers=60 if quick else 2000,
+        small_steps=1000 if quick else 50 * arguments.steps,
+        files=arguments.aggregate,
+        program=program,
+        about=about,
+        say=say,
+    )
+
+
+def _cost(arguments, out, about):
+    return cost.measure(
+        out,
+        _plan(arguments),
+        drives=arguments.drive or list(DRIVES),
+        coarse=dict.fromkeys(DRIVES, arguments.coarse),
+        full_below=arguments.full_below,
+        seeds=2 if arguments.quick else arguments.seeds,
+        minutes=arguments.minutes,
+        about=about,
+        say=say,
+    )
+
+
+def _scaling(arguments, out, about):
+    quick = arguments.quick
+    scaling.measure(
+        out,
+        numbers=scaling.NUMBERS[:3] if quick else scaling.NUMBERS,
+        repeats=2 if quick else 5,
+        updates=1e4 if quick else 4e7,
+        about=about,
+        say=say,
+    )
+
+
+def _pipeline(arguments, out, about):
+    plan = _plan(arguments)
+    small = [size for size in plan.sizes[::-1] if float(size) <= arguments.small]
+    if not small:
+        raise InputError(f"--small is {arguments.small:g}; it must be at least the smallest size, {plan.sizes[-1]}.")
+    pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
+
+
+def _profile(arguments, out, about):
+    plan = _plan(arguments)
+    profile.measure(out, plan, sizes=plan.sizes if arguments.quick else PROFILED, about=about, say=say)
+
+
+_MEASURE = {"kernel": _kernel, "cost": _cost, "scaling": _scaling, "pipeline": _pipeline, "profile": _profile}
+
+
+def _plan(arguments):
     """The plan of the spin-up, whose config the files stand over; paths in it are meant from this repository."""
-    settings = config.load(ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml", *paths)
+    settings = config.load(ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml", *arguments.config)
     settings["materials_file"] = str(ROOT / settings["materials_file"])
-    if quick:
+    if arguments.quick:
         own = {
             "materials": ["q-S"],
             "sizes_nm": [50],

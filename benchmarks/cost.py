@@ -25,13 +25,13 @@ import numpy as np
 
 from benchmarks import machine, tables
 from ratd import grow, spin_up
-from ratd.aggregates.growth import RadiusDistribution
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import InputError
 from ratd.base.units import NM
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import FIRST_LOSS, relax
-from ratd.experiments.spin_up.solid import solid_omega, spin_share
-from ratd.experiments.spin_up.variations import first_step
+from ratd.experiments.spin_up.same_grains import first_step
+from ratd.experiments.spin_up.solid import solid_omega
 
 FASTER = 3
 """How much faster still the second run of each cell is."""
@@ -242,7 +242,7 @@ def expected_steps(plan, drive, grain):
     if spin["epsilon"] is not None:
         return 1.0 / (spin["epsilon"] * omega * dt)
     if drive == "literal":
-        omega, _ = solid_omega(FIRST_LOSS * omega, spin_share(grain), spin["angular_acceleration"], dt)
+        omega, _ = solid_omega(FIRST_LOSS * omega, grain.shape.spin_share, spin["angular_acceleration"], dt)
     return omega / (spin["angular_acceleration"] * dt)
 
 

@@ -4,14 +4,14 @@ import time
 from typing import NamedTuple
 
 import numpy as np
+from ratd.engine.advance import FULL, STEPS_DONE, advance
 
 from ratd.drives.rotating import Drive, make_drive
-from ratd.engine.advance import FULL, STEPS_DONE, advance
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.fragments import find_fragments
 from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, OMEGA, STEPS, TIME
 from ratd.engine.state import State, new_state, with_room
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.run import TIMESTEP_FACTOR, relax
 
 EPSILON = 1e-9

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ratd import Grain
-from ratd.aggregates.growth import RadiusDistribution, grow_with_radii
+from ratd.aggregates.growth import grow_with_radii
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError, InputError
 
 

@@ -19,7 +19,7 @@ from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
 from ratd.base.errors import FileError
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 
 DRIVE = "prescribed"
 PARTS = ("config", "profiles", "workflow", "Snakefile")

@@ -1,6 +1,9 @@
-"""CSV files of results: rows are dicts, a file is written as a whole."""
+"""CSV files of results: written as a whole from rows that are dicts, and read for the report."""
 
 import csv
+
+import numpy as np
+import pandas as pd
 
 from ratd.pipeline.io import atomic
 
@@ -27,3 +30,33 @@ def write(path, rows):
         writer.writeheader()
         for row in rows:
             writer.writerow({key: f"{v:.6g}" if isinstance(v, float) else v for key, v in row.items()})
+
+
+def frame(out, name):
+    """A CSV file of the folder `out` as pandas.DataFrame, None where there is none."""
+    path = out / f"{name}.csv"
+    return pd.read_csv(path, keep_default_na=True) if path.exists() else None
+
+
+def pair_ratios(case):
+    """LAMMPS over ratd for each pair of a case, (pairs,); empty without LAMMPS."""
+    both = case.pivot_table(index="pair", columns="code", values="ns_per_contact_step")
+    return (both["LAMMPS"] / both["ratd"]).to_numpy() if "LAMMPS" in both else np.empty(0)
+
+
+def projected_range(row):
+    """Core-hours [h], low and high, if all cells not run in full were off together by the scatter of those that were.
+
+    None for both where nothing is known of the scatter.
+    """
+    scatter = row.full_to_projected_scatter
+    if not np.isfinite(scatter):
+        return None, None
+    rest = (1.0 - row.part_run_in_full) * row.core_hours
+    return tuple(row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
+
+
+def markdown_table(header, rows):
+    """A table in Markdown, str, from the texts of its header and of its rows."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)

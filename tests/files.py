@@ -5,9 +5,10 @@ import xarray as xr
 
 from ratd.aggregates import files as grain_files
 from ratd.aggregates.grain import Grain
-from ratd.base.materials import MATERIALS, equilibrium_compression
+from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up import run_files
 from ratd.experiments.spin_up.files import END_REASONS, RUN_VALUES
+from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import blocks, io, kinds
 
 

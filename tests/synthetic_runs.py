@@ -5,7 +5,7 @@ import pandas as pd
 import xarray as xr
 
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.ensemble import eq33
+from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.marks import disruption
 
 CONTACTS = {"BA": lambda n: n - 1, "BAM1": lambda n: 2 * n - 3, "BAM2": lambda n: 3 * n - 6}

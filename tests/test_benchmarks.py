@@ -2,7 +2,6 @@
 
 import csv
 import math
-import os
 import shutil
 import subprocess
 import sys
@@ -22,11 +21,10 @@ def benchmarks(monkeypatch):
     monkeypatch.syspath_prepend(ROOT)
 
 
-def command(*words, environment=None):
+def command(*words):
     return subprocess.run(
         [sys.executable, "-m", "benchmarks", *map(str, words)],
         cwd=ROOT,
-        env=os.environ | (environment or {}),
         capture_output=True,
         text=True,
         check=False,
@@ -114,10 +112,11 @@ def test_profile_divides_all_steps_among_its_bands(tmp_path):
 
 def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     from benchmarks import report
+    from benchmarks.goals import goals
 
-    assert report.goals(tmp_path) == []
+    assert goals(tmp_path) == []
     (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
-    (goal,) = report.goals(tmp_path)
+    (goal,) = goals(tmp_path)
     assert "up to 100 nm" in goal.what and (goal.unit, goal.limit, goal.greatest) == ("%", 10.0, True)
     assert goal.value == pytest.approx(10.0)
     readme = tmp_path / "own.md"
@@ -144,9 +143,9 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
     ],
 )
 def test_a_projected_goal_is_judged_by_its_range(greatest, value, span, found, verdict):
-    from benchmarks import report
+    from benchmarks.goals import Goal
 
-    goal = report.Goal("cost", "h", value, 50.0, greatest, *span)
+    goal = Goal("cost", "h", value, 50.0, greatest, *span)
     assert (goal.found, goal.verdict) == (found, verdict)
 
 

@@ -5,8 +5,9 @@ import pytest
 
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
-from ratd.base.materials import Material, equilibrium_compression, get_material
+from ratd.base.materials import Material, get_material
 from ratd.geometry.shape import enclosing_radius
+from ratd.laws.contact_constants import equilibrium_compression
 
 QUARTZ = get_material("q-S")
 DELTA_0 = equilibrium_compression(10e-9, QUARTZ.surface_energy, QUARTZ.reduced_modulus)

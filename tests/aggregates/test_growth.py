@@ -4,11 +4,15 @@ import numpy as np
 import pytest
 
 import naive_geometry as naive
-from ratd.aggregates import growth
+from ratd.aggregates import ballistic, radii
+from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.grain import gaps
-from ratd.aggregates.growth import TYPES, RadiusDistribution, draw_radii, grow, grow_with_radii, smallest_a_eff
+from ratd.aggregates.growth import TYPES, grow, grow_with_radii, smallest_a_eff
+from ratd.aggregates.radii import RadiusDistribution, draw_radii, mrn_moment, mrn_radii
 from ratd.base.errors import InputError
-from ratd.base.materials import Material, equilibrium_compression, get_material, reduced_radius
+from ratd.base.materials import Material, get_material
+from ratd.geometry.directions import random_direction, random_normal
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 
 QUARTZ = get_material("q-S")
 CONSTANTS = QUARTZ.surface_energy, QUARTZ.reduced_modulus
@@ -43,11 +47,30 @@ def test_both_readings_give_the_monomer_counts_of_figure_1():
     assert RadiusDistribution(8.77e-9, 1.2845).moment(3) ** (1 / 3) == pytest.approx(40.3e-9, rel=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("q", "length"),
+    [(1, 0.0831), (2, 0.1036), (3, 0.1560), (4, 0.2462), (5, 0.3536), (6, 0.4631), (4.5, 0.2989), (4.6, 0.3098)],
+)
+def test_mean_lengths_of_the_mrn_law_are_the_exact_ones(q, length):
+    """shared/collision.md, Sect. 3, for radii of 0.05 to 2.5 um."""
+    assert mrn_moment(q, 0.05e-6, 2.5e-6) ** (1 / q) == pytest.approx(length * 1e-6, abs=0.5e-10)
+
+
+def test_radii_of_the_mrn_law_have_its_moments_and_ends():
+    smallest, largest = 0.05e-6, 2.5e-6
+    np.testing.assert_allclose(mrn_radii([0.0, 1.0], smallest, largest), [smallest, largest], rtol=1e-12)
+    u = (np.arange(400_000) + 0.5) / 400_000
+    for k in (0, 1, 2, 2.5, 3):
+        assert np.mean(mrn_radii(u, smallest, largest) ** k) == pytest.approx(
+            mrn_moment(k, smallest, largest), rel=2e-3
+        )
+
+
 @pytest.mark.parametrize("median", [20e-9, 8.77e-9])
 def test_free_draws_follow_the_cut_distribution(median):
     distribution = RadiusDistribution(median, 0.844 if median > 10e-9 else 1.2845)
     source = rng(1)
-    a = [growth._cut_lognormal(math.log(median / 10e-9), distribution.sigma_ln, 10.0, source) for _ in range(40000)]
+    a = [radii._cut_lognormal(math.log(median / 10e-9), distribution.sigma_ln, 10.0, source) for _ in range(40000)]
     a = np.array(a) * 10e-9
     assert a.min() >= 10e-9 and a.max() <= 100e-9
     for k in (1, 3):
@@ -58,7 +81,7 @@ def test_free_draws_follow_the_cut_distribution(median):
 def test_draws_from_a_narrow_range_follow_the_same_law():
     # Between 10 and 11 nm, where the density is nearly 1/a: mean of ln a = half the range.
     source = rng(1)
-    logs = np.log([growth._cut_lognormal(math.log(2.0), 0.844, 1.1, source) for _ in range(20000)])
+    logs = np.log([radii._cut_lognormal(math.log(2.0), 0.844, 1.1, source) for _ in range(20000)])
     assert logs.min() >= 0.0 and logs.max() <= math.log(1.1)
     grid = np.linspace(0, math.log(1.1), 10001)
     density = np.exp(-0.5 * ((grid - math.log(2.0)) / 0.844) ** 2)
@@ -128,7 +151,7 @@ def test_the_last_radii_are_no_different_from_the_first():
 
 def test_directions_are_isotropic():
     source = rng(2)
-    d = np.array([growth._random_direction(source) for _ in range(30000)])
+    d = np.array([random_direction(source) for _ in range(30000)])
     np.testing.assert_allclose(np.linalg.norm(d, axis=1), 1.0, rtol=1e-12)
     np.testing.assert_allclose(d.mean(axis=0), 0.0, atol=4 / math.sqrt(3 * 30000))
     np.testing.assert_allclose(d.T @ d / 30000, np.eye(3) / 3, atol=4 * 0.3 / math.sqrt(30000))
@@ -137,7 +160,7 @@ def test_directions_are_isotropic():
 @pytest.mark.parametrize("normal", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.6, -0.8, 0.0), (-0.36, 0.48, 0.8)])
 def test_normals_are_uniform_on_their_circle(normal):
     source = rng(3)
-    u = np.array([growth._random_normal(*normal, source) for _ in range(10000)])
+    u = np.array([random_normal(*normal, source) for _ in range(10000)])
     np.testing.assert_allclose(np.linalg.norm(u, axis=1), 1.0, rtol=1e-12)
     np.testing.assert_allclose(u @ normal, 0.0, atol=1e-12)
     np.testing.assert_allclose(u.mean(axis=0), 0.0, atol=0.03)
@@ -146,13 +169,11 @@ def test_normals_are_uniform_on_their_circle(normal):
 
 def test_monomers_arrive_from_everywhere():
     # The second monomer's place relative to the first, and the spread of whole BA aggregates, have no direction.
-    place = np.array([growth._aggregate(np.full(2, 3e-8), *CONSTANTS, 0, False, rng(s))[1] for s in range(8000)])
+    place = np.array([place_monomers(np.full(2, 3e-8), *CONSTANTS, 0, False, rng(s))[1] for s in range(8000)])
     n = place / np.linalg.norm(place, axis=1)[:, None]
     np.testing.assert_allclose(n.mean(axis=0), 0.0, atol=4 / math.sqrt(3 * 8000))
     np.testing.assert_allclose(n.T @ n / 8000, np.eye(3) / 3, atol=4 * 0.3 / math.sqrt(8000))
-    spread = np.array(
-        [np.var(growth._aggregate(np.ones(100), *CONSTANTS, 0, False, rng(s)), axis=0) for s in range(300)]
-    )
+    spread = np.array([np.var(place_monomers(np.ones(100), *CONSTANTS, 0, False, rng(s)), axis=0) for s in range(300)])
     error = spread.std() / math.sqrt(300)
     np.testing.assert_allclose(spread.mean(axis=0), spread.mean(), atol=4 * error)
 
@@ -162,7 +183,7 @@ def table_of(position, radius):
     size = 2 * radius.max()
     head, follower = np.full(256, -1), np.full(len(radius), -1)
     for i in range(len(radius)):
-        growth._insert(i, position, size, head, follower)
+        ballistic._insert(i, position, size, head, follower)
     return size, head, follower
 
 
@@ -178,10 +199,12 @@ def test_first_touch_is_that_of_trying_every_monomer(n, a):
     reach = np.linalg.norm(position, axis=1).max() + 1.5e-7
     hits = 0
     for k in range(400):
-        d = np.eye(3)[k % 3] * (-1) ** k if k < 30 else np.array(growth._random_direction(source))
-        aside = np.array(growth._random_normal(*d, source)) * reach * math.sqrt(source.random())
+        d = np.eye(3)[k % 3] * (-1) ** k if k < 30 else np.array(random_direction(source))
+        aside = np.array(random_normal(*d, source)) * reach * math.sqrt(source.random())
         start = aside - 2 * reach * d
-        t, hit = growth._first_touch(start, d, a, position, radius, radius.max(), box, size, head, follower, *CONSTANTS)
+        t, hit = ballistic._first_touch(
+            start, d, a, position, radius, radius.max(), box, size, head, follower, *CONSTANTS
+        )
         expected, expected_hit = naive.first_touch(start, d, distance, position)
         assert hit == expected_hit
         assert t == pytest.approx(expected, rel=1e-12)
@@ -196,7 +219,7 @@ def test_near_monomers_are_all_found_once():
     near = np.empty(150, dtype=np.int64)
     for reach in (1e-9, 1e-7, 4e-7, 1e-5):
         for x in position[:20] * 1.1:
-            count = growth._near(*x, reach, position, radius, radius.max(), size, head, follower, near)
+            count = ballistic._near(*x, reach, position, radius, radius.max(), size, head, follower, near)
             expected = np.flatnonzero(np.linalg.norm(position - x, axis=1) < reach + radius)
             np.testing.assert_array_equal(np.sort(near[:count]), expected)
 
@@ -216,7 +239,7 @@ def test_rolling_stops_where_small_steps_do(seed):
     blocked[0] = False
     position[blocked] += 1e-6
     near = np.arange(12)
-    angle, hit = growth._roll(position[0], e, f, s, a, (0, 0), near, 12, position, radius, *CONSTANTS)
+    angle, hit = ballistic._roll(position[0], e, f, s, a, (0, 0), near, 12, position, radius, *CONSTANTS)
     steps = 40000
     slow, slow_hit = naive.roll(position[0], e, f, s, distance, position, steps)
     assert hit == slow_hit
@@ -232,13 +255,13 @@ def test_the_way_to_the_nearest_place_is_no_longer_than_any_other():
     radius = np.full(4, 4e-8)
     near = np.arange(4)
     f = np.empty(3)
-    assert growth._way_to_nearest(e, s, a, 0, near, 4, position, radius, *CONSTANTS, f)
+    assert ballistic._way_to_nearest(e, s, a, 0, near, 4, position, radius, *CONSTANTS, f)
     assert f @ e == pytest.approx(0.0, abs=1e-12) and f @ f == pytest.approx(1.0)
-    nearest, _ = growth._roll(position[0], e, f, s, a, (0, 0), near, 4, position, radius, *CONSTANTS)
+    nearest, _ = ballistic._roll(position[0], e, f, s, a, (0, 0), near, 4, position, radius, *CONSTANTS)
     others = []
     for _ in range(2000):
-        g = np.array(growth._random_normal(*e, source))
-        others.append(growth._roll(position[0], e, g, s, a, (0, 0), near, 4, position, radius, *CONSTANTS)[0])
+        g = np.array(random_normal(*e, source))
+        others.append(ballistic._roll(position[0], e, g, s, a, (0, 0), near, 4, position, radius, *CONSTANTS)[0])
     assert nearest <= min(others) <= nearest * 1.01
 
 
@@ -397,7 +420,7 @@ def test_sizes_that_no_number_of_monomers_gives_are_refused():
 
 def test_sizes_that_only_equal_monomers_give_are_given_up(monkeypatch):
     # Three monomers of 11 nm and nothing else: no draws ever hit that.
-    monkeypatch.setattr(growth, "_MOST_PATHS", 2000)
+    monkeypatch.setattr(radii, "_MOST_PATHS", 2000)
     narrow = RadiusDistribution(10.5e-9, 0.1, 10e-9, 11e-9)
     a_eff = 3 ** (1 / 3) * 11e-9 * (1 - 1e-9)
     with pytest.raises(InputError, match="choose another size"):

@@ -3,17 +3,13 @@ import math
 import pytest
 
 from ratd.base.errors import InputError
-from ratd.base.materials import (
-    CO_S_FRACTIONS,
-    MATERIALS,
-    Material,
-    element_ratios,
+from ratd.base.materials import CO_S_FRACTIONS, MATERIALS, Material, element_ratios, get_material, mix
+from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
-    get_material,
-    mix,
     pull_off_force,
     reduced_radius,
+    rolling_energy,
 )
 
 
@@ -95,17 +91,57 @@ def test_contact_constants_agree_with_each_other(name, a_i, a_j):
     assert delta_0 < 0.01 * min(a_i, a_j)
 
 
+@pytest.mark.parametrize(
+    ("name", "a", "t_0", "rolling"),
+    [("ice", 0.1e-6, 1.9365e-10, 4.737e-16), ("silicate", 0.6e-6, 1.7073e-9, 1.4212e-15)],
+)
+def test_materials_of_compression(name, a, t_0, rolling):
+    """shared/compression.md, Sect. 1: t_0 of Kataoka et al. 2013, Eq. 2, E_roll, and T_vis for k_n = 0.01."""
+    material = MATERIALS[name]
+    gamma, modulus = material.surface_energy, material.reduced_modulus
+    time = 0.95 * a ** (7 / 6) * material.density**0.5 / (gamma ** (1 / 6) * modulus ** (1 / 3))
+    assert time == pytest.approx(t_0, rel=1e-4)
+    energy = rolling_energy(reduced_radius(a, a), gamma, material.critical_rolling_displacement)
+    assert energy == pytest.approx(rolling, rel=2e-4)
+    mass = 4 / 3 * math.pi * material.density * a**3
+    contact_radius = equilibrium_contact_radius(reduced_radius(a, a), gamma, modulus)
+    damping = 2 * modulus / material.poisson_number**2 * contact_radius * material.viscous_time
+    assert damping == pytest.approx(0.01 * mass / time, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("a", "delta_eq", "e_break"),
+    [
+        (0.05e-6, 0.1215e-9, 5.73e-19),
+        (0.314e-6, 0.2242e-9, 6.64e-18),
+        (0.396e-6, 0.2423e-9, 9.04e-18),
+        (0.453e-6, 0.2534e-9, 1.08e-17),
+        (0.57e-6, 0.2735e-9, 1.47e-17),
+    ],
+)
+def test_silica_of_collisions(a, delta_eq, e_break):
+    """shared/collision.md, Sect. 1: compression at rest and energy to break a contact of Umstaetter & Urbassek 2020."""
+    material = MATERIALS["silica"]
+    R = reduced_radius(a, a)
+    pull = 4 * math.pi * material.surface_energy * R
+    delta = (pull / (4 / 3 * material.reduced_modulus * math.sqrt(R))) ** (2 / 3)
+    assert delta == pytest.approx(delta_eq, rel=5e-4)
+    assert 0.6 * pull * delta == pytest.approx(e_break, rel=5e-3)
+    # T_vis = (2/3) nu^2 A
+    assert 1.5 * material.viscous_time / material.poisson_number**2 == pytest.approx(0.5e-9, rel=1e-3)
+
+
 def test_reduced_radius_of_a_wall():
     assert reduced_radius(10e-9, 1.0) == pytest.approx(10e-9, rel=1e-7)
 
 
 def test_get_material_takes_names_materials_and_other_tables():
-    own = Material("ice", 0.1, 7e9, 0.25, 1000.0)
+    own = Material("snow", 0.1, 7e9, 0.25, 1000.0)
     assert get_material("q-S") is MATERIALS["q-S"]
     assert get_material(own) is own
-    assert get_material("ice", {"ice": own}) is own
-    with pytest.raises(InputError, match="'ice'; allowed are a-C, q-S"):
-        get_material("ice")
+    assert get_material("snow", {"snow": own}) is own
+    with pytest.raises(InputError, match="'snow'; allowed are a-C, q-S"):
+        get_material("snow")
     with pytest.raises(InputError, match="allowed are"):
         get_material(3)
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import spearmanr
 
 from ratd.base.statistics import (
+    binomial_interval,
     equal_weights,
     jackknife_error,
     mean_of,
@@ -14,6 +15,7 @@ from ratd.base.statistics import (
     rank_correlation_error,
     slope_error,
     slope_of,
+    weighted_line,
 )
 
 
@@ -159,3 +161,21 @@ def test_error_of_a_rank_correlation_is_the_scatter_of_many(linked, n):
     found = [rank_correlation(*both) for both in zip(x, linked * x + np.sqrt(1 - linked**2) * own, strict=True)]
     assert rank_correlation_error(np.mean(found), n) == pytest.approx(np.std(found), rel=0.1)
     assert np.isnan(rank_correlation_error([0.5, 0.5], [3, 2])).all()
+
+
+def test_binomial_intervals_of_wilson():
+    assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
+    assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
+    assert binomial_interval(10, 10)[1] == 1.0 and binomial_interval(0, 10)[0] == 0.0
+    assert np.isnan(binomial_interval(0, 0)).all()
+
+
+def test_weighted_lines_go_along_the_last_axis_and_equal_x_have_no_slope():
+    x = np.array([[0.0, 1.0, 3.0], [2.0, 2.0, 2.0]])
+    slope, level = weighted_line(x, 5.0 - 2.0 * x, np.array([1.0, 2.0, 0.5]))
+    np.testing.assert_allclose([slope[0], level[0]], [-2.0, 5.0], rtol=1e-12)
+    assert np.isnan(slope[1]) and np.isnan(level[1])
+    # a weight of 2 is a point that stands twice
+    y = np.array([1.0, 4.0, 2.0])
+    once = weighted_line(x[0], y, np.array([1.0, 2.0, 1.0]))
+    np.testing.assert_allclose(once, np.polyfit([0, 1, 1, 3], [1, 4, 4, 2], 1), rtol=1e-12)

@@ -16,6 +16,7 @@ from ratd.geometry.shape import (
     principal_axes,
     semi_axes,
     shape_of,
+    spin_share,
 )
 
 DENSITY = 2650.0
@@ -210,3 +211,10 @@ def test_shape_puts_all_together():
     assert shape.mean_coordination == 3.0
     assert shape.enclosing_radius == enclosing_radius(position, radius)
     assert (shape.fractal_dimension, shape.fractal_dimension_error) == fractal_dimension(position, mass)
+
+
+def test_share_of_the_spins_of_two_equal_spheres():
+    # each 2/5 m a^2 of its own, and m a^2 for its way around the middle
+    a, density = 30e-9, 2000.0
+    mass = 4 / 3 * np.pi * density * a**3
+    assert spin_share([a, a], density, 2 * (0.4 + 1.0) * mass * a**2) == pytest.approx(0.8 / 2.8)

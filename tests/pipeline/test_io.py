@@ -15,7 +15,9 @@ from ratd.aggregates import files as grain_files
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up import run_files
-from ratd.experiments.spin_up.ensemble import cell_statistics, fit_ensemble, grain_table, table3_dataset, table_dataset
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import fit_ensemble, table3_dataset
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.tables import read_grain_columns
 from ratd.pipeline import blocks, io, kinds

@@ -7,7 +7,7 @@ from files import make_grain, make_run
 from ratd.aggregates import files as grain_files
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up import ensemble, marks, records
+from ratd.experiments.spin_up import grain_table, marks, run_files
 from ratd.pipeline import blocks, io, kinds
 
 SI = {"1", "m", "s", "kg", "kg m2", "kg m-3", "J", "J m-2", "N", "Pa", "rad", "rad s-1", "rad s-2"}
@@ -44,10 +44,10 @@ def test_one_name_has_one_unit_in_all_files():
 
 def test_files_hold_all_that_disruption_and_ensemble_give():
     assert set(marks.VARIABLES) <= set(kinds.kind_of("disruption").variables)
-    assert set(ensemble.COLUMNS) == set(kinds.kind_of("table").variables)
+    assert set(grain_table.COLUMNS) == set(kinds.kind_of("table").variables)
     # what follows from others, or is computed from the monomers when a file is read
     follows = {"material", "type", "filling_factor", "spin_share"}
-    needed_of_a_grain = set(ensemble.GRAIN_COLUMNS) - follows
+    needed_of_a_grain = set(grain_table.GRAIN_COLUMNS) - follows
     assert needed_of_a_grain <= set(kinds.kind_of("grains").variables)
 
 

@@ -206,7 +206,7 @@ rule pairs:
     resources:
         runtime=60,
     params:
-        task=task("analyse", "ratd.experiments.spin_up.pair:table", "pairs"),
+        task=task("analyse", "ratd.experiments.spin_up.pairs:table", "pairs"),
         settings=lambda w: PLAN.pairs(w.material),
     message:
         "Spin up pairs of {wildcards.material} monomers"
@@ -232,7 +232,7 @@ rule parameters:
     resources:
         runtime=1440,
     params:
-        task=task("run", "ratd.experiments.spin_up.variations:vary", "disruption"),
+        task=task("run", "ratd.experiments.spin_up.same_grains:vary", "disruption"),
         settings=lambda w: PLAN.parameters(w.drive, w.type, w.size),
     message:
         "Vary rolling displacement and viscous time: {wildcards.type} {wildcards.size} nm ({wildcards.drive})"
@@ -285,7 +285,7 @@ rule calibration_runs:
     resources:
         runtime=1440,
     params:
-        task=task("run", "ratd.experiments.spin_up.variations:calibrate", "spinup"),
+        task=task("run", "ratd.experiments.spin_up.same_grains:calibrate", "spinup"),
         settings=lambda w: PLAN.calibration_runs(w.pace),
     message:
         "Spin up the cell of the calibration at d omega/dt, f = {wildcards.pace} (literal)"
@@ -319,7 +319,7 @@ rule calibration:
         "../scripts/analyse.py"
 
 
-# What single formulae of the paper change: one job, hence one process, a formula.
+# What single formulae of the paper change: one job a formula.
 rule formulae:
     output:
         [
@@ -367,7 +367,7 @@ rule formula_table:
     conda:
         "../envs/ratd.yaml"
     params:
-        task=task("analyse", "ratd.experiments.spin_up.formula_table:table", "formulae"),
+        task=task("analyse", "ratd.experiments.spin_up.formulae:table", "formulae"),
         settings=PLAN.formula_table,
     message:
         "Tabulate the runs with single formulae as printed"

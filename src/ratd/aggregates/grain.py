@@ -7,9 +7,10 @@ import numpy as np
 
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
-from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.base.materials import get_material
 from ratd.geometry.neighbours import close_pairs, connected_components
 from ratd.geometry.shape import Shape
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 
 __all__ = ["GAP_TOLERANCE", "OVERLAP_TOLERANCE", "Grain", "gaps"]
 
@@ -79,6 +80,8 @@ class Grain:
     material : Material
     type, seed
         As given.
+    contacts : (k, 2) int64 array
+        Pairs of monomers that touch, i < j, sorted.
     a_eff : float
         Effective radius as given, else `effective_radius` [m].
 
@@ -102,51 +105,15 @@ class Grain:
         self.material = get_material(material)
         self.type = type
         self.seed = seed
-        self._check_arrays()
-        self._check_overlap()
-        self._check_one_piece()
+        _check_arrays(self.position, self.radius)
+        self.contacts, gap = _contacts(self.position, self.radius, self.material)
+        _check_overlap(self.contacts, gap)
+        _check_one_piece(self.n_monomers, self.contacts)
         self.a_eff = self.effective_radius if a_eff is None else float(a_eff)
         if not abs(self.a_eff / self.effective_radius - 1.0) <= 1e-9:
             raise InputError(
                 f"a_eff is {self.a_eff:g} m, but the radii give {self.effective_radius:g} m; leave a_eff out, or give "
                 "the cube root of the sum of the cubed radii."
-            )
-
-    def _check_arrays(self):
-        position, radius = self.position, self.radius
-        if radius.ndim != 1 or position.shape != (len(radius), 3):
-            raise InputError(
-                f"position has shape {position.shape} and radius {radius.shape}; they must be (n, 3) and (n,)."
-            )
-        if len(radius) < 2:
-            raise InputError(f"The aggregate has {len(radius)} monomers; it needs at least 2.")
-        for name, array in (("position", position), ("radius", radius)):
-            wrong = np.flatnonzero(~np.isfinite(array.reshape(len(radius), -1)).all(axis=1))
-            if len(wrong):
-                raise InputError(f"{name}[{wrong[0]}] is {array[wrong[0]]}; every {name} must be a finite number in m.")
-        wrong = np.flatnonzero(radius <= 0.0)
-        if len(wrong):
-            raise InputError(f"radius[{wrong[0]}] is {radius[wrong[0]]:g}; every radius must be above 0 (in m).")
-
-    def _gaps(self, pairs):
-        return gaps(self.position, self.radius, pairs, self.material.surface_energy, self.material.reduced_modulus)
-
-    def _check_overlap(self):
-        gap = self._gaps(self.contacts)
-        if np.any(gap < -OVERLAP_TOLERANCE):
-            worst = int(np.argmin(gap))
-            i, j = self.contacts[worst]
-            raise InputError(
-                f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions; at most "
-                f"{OVERLAP_TOLERANCE:g} are allowed."
-            )
-
-    def _check_one_piece(self):
-        pieces = int(connected_components(self.n_monomers, self.contacts).max()) + 1
-        if pieces > 1:
-            raise InputError(
-                f"The aggregate is in {pieces} pieces; it must be in one, where monomers touch if the gap between them "
-                f"is less than {GAP_TOLERANCE:g} equilibrium compressions."
             )
 
     @property
@@ -163,15 +130,6 @@ class Grain:
     def effective_radius(self):
         """Radius of the sphere of the same volume, (sum a^3)^(1/3) [m] (Eq. 2)."""
         return math.fsum(self.radius**3) ** (1.0 / 3.0)
-
-    @cached_property
-    def contacts(self):
-        """Pairs of monomers that touch, (k, 2) int64, i < j, sorted: gap less than 0.1 equilibrium compressions."""
-        material = self.material
-        largest = float(np.max(self.radius))
-        widest = equilibrium_compression(0.5 * largest, material.surface_energy, material.reduced_modulus)
-        near = close_pairs(self.position, self.radius, GAP_TOLERANCE * widest)
-        return near[self._gaps(near) < GAP_TOLERANCE]
 
     @property
     def n_contacts(self):
@@ -201,3 +159,49 @@ def _float_array(values, name):
         return np.array(values, dtype=np.float64, order="C")
     except (TypeError, ValueError):
         raise InputError(f"{name} is not an array of numbers; it must hold finite numbers in m.") from None
+
+
+def _check_arrays(position, radius):
+    if radius.ndim != 1 or position.shape != (len(radius), 3):
+        raise InputError(
+            f"position has shape {position.shape} and radius {radius.shape}; they must be (n, 3) and (n,)."
+        )
+    if len(radius) < 2:
+        raise InputError(f"The aggregate has {len(radius)} monomers; it needs at least 2.")
+    for name, array in (("position", position), ("radius", radius)):
+        wrong = np.flatnonzero(~np.isfinite(array.reshape(len(radius), -1)).all(axis=1))
+        if len(wrong):
+            raise InputError(f"{name}[{wrong[0]}] is {array[wrong[0]]}; every {name} must be a finite number in m.")
+    wrong = np.flatnonzero(radius <= 0.0)
+    if len(wrong):
+        raise InputError(f"radius[{wrong[0]}] is {radius[wrong[0]]:g}; every radius must be above 0 (in m).")
+
+
+def _contacts(position, radius, material):
+    """Pairs of monomers that touch, (k, 2) int64, i < j, sorted, and their gaps in equilibrium compressions, (k,)."""
+    constants = material.surface_energy, material.reduced_modulus
+    largest = float(np.max(radius))
+    widest = equilibrium_compression(reduced_radius(largest, largest), *constants)
+    near = close_pairs(position, radius, GAP_TOLERANCE * widest)
+    gap = gaps(position, radius, near, *constants)
+    touch = gap < GAP_TOLERANCE
+    return near[touch], gap[touch]
+
+
+def _check_overlap(contacts, gap):
+    if np.any(gap < -OVERLAP_TOLERANCE):
+        worst = int(np.argmin(gap))
+        i, j = contacts[worst]
+        raise InputError(
+            f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions; at most "
+            f"{OVERLAP_TOLERANCE:g} are allowed."
+        )
+
+
+def _check_one_piece(n_monomers, contacts):
+    pieces = int(connected_components(n_monomers, contacts).max()) + 1
+    if pieces > 1:
+        raise InputError(
+            f"The aggregate is in {pieces} pieces; it must be in one, where monomers touch if the gap between them "
+            f"is less than {GAP_TOLERANCE:g} equilibrium compressions."
+        )

@@ -1,36 +1,32 @@
 """The one place that holds the flags of every compiled function.
 
 numba's own cache notices a change of the file that a function stands in, but not of the files that it calls into.
-The cache folder is therefore keyed by the content of every source file that compiled code may depend on: a change in
-any of them compiles anew, a change of a figure does not.
+The cache folder is therefore keyed by the content of every source file of the package that compiled code may depend on:
+a change in any of them compiles anew, a change of a figure does not.
 """
 
 import hashlib
 import os
-import re
-from functools import partial
 from pathlib import Path
 
 import numba
 import numpy as np
 
+from ratd.base.parts import FLAGS, OwnPartsCache
+
+COMPILED = ("base", "laws", "geometry", "engine", "drives", "observables", "aggregates", "experiments")
+"""Layers with compiled code."""
+
 
 def _source_digest():
-    """Hash of the files with compiled code and of all files of the package that they import, directly or not."""
     root = Path(__file__).parent.parent
-    names = {".".join(path.relative_to(root.parent).with_suffix("").parts): path for path in root.rglob("*.py")}
-    texts = {name: path.read_bytes() for name, path in names.items()}
-    wanted = [name for name, text in texts.items() if b"ratd.base.jit import" in text]
-    needed = set()
-    while wanted:
-        name = wanted.pop()
-        if name in texts and name not in needed:
-            needed.add(name)
-            wanted += [found.decode() for found in re.findall(rb"^from (ratd[\w.]*) import", texts[name], re.MULTILINE)]
     digest = hashlib.sha256()
-    for name in sorted(needed):
-        digest.update(name.encode())
-        digest.update(texts[name])
+    for layer in COMPILED:
+        for path in sorted((root / layer).rglob("*.py")):
+            text = path.read_bytes()
+            if b"base.jit import" in text or b"base.parts import" in text or layer in ("base", "laws", "engine"):
+                digest.update(str(path.relative_to(root)).encode())
+                digest.update(text)
     digest.update(f"numba {numba.__version__} numpy {np.__version__}".encode())
     return digest.hexdigest()[:16]
 
@@ -45,8 +41,11 @@ def _cache_root():
 
 numba.config.CACHE_DIR = str(_cache_root() / f"numba-{_source_digest()}")
 
-# error_model="numpy": a division by zero gives inf, as in numpy; the check for it would block vectorisation.
-# contract: a*b + c may become one fused instruction. Nothing else is relaxed, so results repeat bit for bit.
-FLAGS = dict(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
 
-jit = partial(numba.njit, **FLAGS)
+def jit(function=None, **options):
+    """`numba.njit` with the flags of the package (`ratd.base.parts.FLAGS`) and a cache on disk; a decorator."""
+    if function is None:
+        return lambda inner: jit(inner, **options)
+    compiled = numba.njit(**FLAGS, **options)(function)
+    compiled._cache = OwnPartsCache(function)
+    return compiled

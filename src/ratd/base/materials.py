@@ -1,15 +1,10 @@
-"""Materials of the monomers (Table 2) and the contact constants that follow from them (Sect. 4).
-
-The contact constants stand here rather than with the contact law because the growth needs them too, and growth must
-not depend on the law that moves the monomers later.
-"""
+"""Materials of the monomers: constants of the bulk and of its surface, and means of several materials."""
 
 import math
 from dataclasses import dataclass, fields
 
 from ratd.base.errors import InputError
-from ratd.base.jit import jit
-from ratd.base.units import GPA, MJ_PER_M2
+from ratd.base.units import GPA, MJ_PER_M2, NM, PS
 
 __all__ = [
     "COMPOSITION",
@@ -17,12 +12,8 @@ __all__ = [
     "MATERIALS",
     "Material",
     "element_ratios",
-    "equilibrium_compression",
-    "equilibrium_contact_radius",
     "get_material",
     "mix",
-    "pull_off_force",
-    "reduced_radius",
 ]
 
 
@@ -45,7 +36,7 @@ class Material:
     critical_rolling_displacement : float
         xi_c [m].
     viscous_time : float
-        T_vis [s]; 0 switches the viscoelastic damping off.
+        T_vis [s] of the damping (2 E*/nu^2) r T_vis; 0 switches it off.
 
     Raises
     ------
@@ -54,7 +45,7 @@ class Material:
 
     Notes
     -----
-    Table 2 of Reissl et al. 2024 (A&A 692, A60).
+    The defaults are those of Reissl et al. 2024 (A&A 692, A60).
     """
 
     name: str
@@ -113,9 +104,22 @@ MATERIALS = {
         Material("fayalite", 70 * MJ_PER_M2, 140 * GPA, 0.32, 4393.0),
         Material("enstatite", 70 * MJ_PER_M2, 180 * GPA, 0.21, 3209.0),
         Material("ferrosilite", 70 * MJ_PER_M2, 142 * GPA, 0.31, 4014.0),
+        Material("ice", 100 * MJ_PER_M2, 7 * GPA, 0.25, 1000.0, 0.8 * NM, 0.146 * PS),
+        Material("silicate", 20 * MJ_PER_M2, 54 * GPA, 0.17, 2650.0, 2.0 * NM, 0.597 * PS),
+        Material("silica", 25 * MJ_PER_M2, 54 * GPA, 0.17, 2000.0, 0.1 * NM, 9.63 * PS),
     )
 }
-"""Materials by name: a-C, q-S, co-S of Table 2 and the four minerals that co-S is mixed from."""
+"""Materials by name.
+
+a-C, q-S, co-S and the four minerals that co-S is mixed from: Table 2 of Reissl et al. 2024 (A&A 692, A60).
+
+ice, silicate: Table 1 of Kataoka et al. 2013 (A&A 554, A4), meant for monomers of 0.1 and 0.6 um. Their damping is a
+constant k_n m_0/t_0; T_vis is what makes the damping of equal monomers of that size the same at rest, k_n = 0.01.
+
+silica: as used by Umstaetter & Urbassek 2020 (A&A 633, A24), recalled from other papers of the group, since they do not
+print it; the rolling displacement is their xi_yield. Their damping K A sqrt(delta), the contact being of radius
+sqrt(delta R), is (4/3) E* r A; T_vis = (2/3) nu^2 A is that of A = 0.5 ns.
+"""
 
 
 def mix(name, fractions, table=None):
@@ -235,50 +239,3 @@ def _check_fractions(fractions, what):
 
 
 MATERIALS["co-S"] = mix("co-S", CO_S_FRACTIONS)
-
-
-@jit
-def reduced_radius(a_i, a_j):
-    """R = a_i a_j/(a_i + a_j) [m] of two spheres (Sect. 4)."""
-    return a_i * a_j / (a_i + a_j)
-
-
-@jit
-def equilibrium_contact_radius(R, surface_energy, reduced_modulus):
-    """Radius of the contact area at rest, r0 = (9 pi gamma R^2/E*)^(1/3) [m] (Eq. 10).
-
-    Parameters
-    ----------
-    R : float
-        Reduced radius [m].
-    surface_energy : float
-        gamma [J m-2].
-    reduced_modulus : float
-        E* [Pa].
-    """
-    return (9.0 * math.pi * surface_energy * R * R / reduced_modulus) ** (1.0 / 3.0)
-
-
-@jit
-def pull_off_force(R, surface_energy):
-    """Greatest pull that a contact holds, F_C = 3 pi gamma R [N] (Eq. 12), with R [m] and gamma [J m-2]."""
-    return 3.0 * math.pi * surface_energy * R
-
-
-@jit
-def equilibrium_compression(R, surface_energy, reduced_modulus):
-    """Compression of a contact at rest, delta_0 = r0^2/(3 R) [m].
-
-    The paper prints r0/(3 R), which is not a length.
-
-    Parameters
-    ----------
-    R : float
-        Reduced radius [m].
-    surface_energy : float
-        gamma [J m-2].
-    reduced_modulus : float
-        E* [Pa].
-    """
-    r0 = equilibrium_contact_radius(R, surface_energy, reduced_modulus)
-    return r0 * r0 / (3.0 * R)

@@ -1,11 +1,14 @@
 """Medians, means and slopes with their uncertainty, of values of which some cells may have more than others."""
 
+import math
 from functools import lru_cache
+from statistics import NormalDist
 
 import numpy as np
 import pandas as pd
 
 __all__ = [
+    "binomial_interval",
     "drawn_counts",
     "equal_weights",
     "jackknife_error",
@@ -16,6 +19,7 @@ __all__ = [
     "rank_correlation_error",
     "slope_error",
     "slope_of",
+    "weighted_line",
 ]
 
 N_BOOTSTRAP = 2000
@@ -276,3 +280,47 @@ def slope_error(influence):
     neither the same scatter everywhere nor several points at one x. NaN where no three points have an influence.
     """
     return float(np.sqrt(np.sum(influence**2))) if np.count_nonzero(influence) > 2 else np.nan
+
+
+def weighted_line(x, y, weights):
+    """Straight lines by least squares.
+
+    Parameters
+    ----------
+    x, y, weights : array_like, shape (..., n)
+        A line along the last axis; the shapes broadcast.
+
+    Returns
+    -------
+    slope, level : numpy.ndarray, shape (...)
+        Of y = level + slope x; NaN for a line of equal x.
+    """
+    total = weights.sum(axis=-1, keepdims=True)
+    x_mean, y_mean = ((weights * v).sum(axis=-1, keepdims=True) / total for v in (x, y))
+    spread = np.sum(weights * (x - x_mean) ** 2, axis=-1)
+    # a replicate of a bootstrap may draw equal x only, which leaves rounding: no slope
+    slope = np.sum(weights * (x - x_mean) * (y - y_mean), axis=-1) / np.where(spread > 1e-20, spread, np.nan)
+    return slope, y_mean[..., 0] - slope * x_mean[..., 0]
+
+
+def binomial_interval(k, n, confidence=0.95):
+    """Wilson's interval of a probability, k of n.
+
+    Parameters
+    ----------
+    k, n : int
+    confidence : float
+
+    Returns
+    -------
+    tuple of float
+        Low and high; NaN for n = 0.
+    """
+    if n == 0:
+        return math.nan, math.nan
+    z = NormalDist().inv_cdf(0.5 + confidence / 2)
+    p = k / n
+    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    # exact at both ends, where the difference is left with rounding
+    return 0.0 if k == 0 else centre - half, 1.0 if k == n else centre + half

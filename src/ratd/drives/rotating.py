@@ -1,7 +1,7 @@
-"""What moves the aggregate: the law omega(t) and the equations of motion of a monomer in the turning frame.
+"""A grain turned by an outer torque: the law omega(t), the turning frame, the largest fragment followed.
 
 `prescribed` is the consistent model: an outer torque keeps the largest fragment turning at omega(t). `literal` is what
-the paper prints: fictitious forces only, no torque, no frame terms for the spins (docs/model.md).
+the paper prints: fictitious forces only, no torque, no frame terms for the spins.
 """
 
 import math
@@ -11,30 +11,27 @@ import numpy as np
 
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
+from ratd.base.parts import part
+from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
+from ratd.engine.fragments import drop, label_fragments, note_lost
 from ratd.engine.layout import (
-    DRIVEN,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    INERTIA,
-    INV_INERTIA,
-    INV_MASS,
-    MASS,
-    ROW,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
-    VX,
-    VY,
-    VZ,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
+    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    TIME, TORQUE_X, VX, VY, VZ, WX, X, Y, Z,
 )  # fmt: skip
+from ratd.observables.stress import total_stress
+
+OMEGA = CLOCK
+"""Of `state.drive`: angular velocity of the frame [rad/s]."""
+ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS = range(1, 8)
+"""... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last
+step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments."""
+
+CENTRE_EVERY = 4096
+"""Steps after which the origin is put back to the centre of mass.
+
+The outer torque acts about the origin. Off the centre of mass by x it leaves a net force m alpha x, which makes x grow
+by exp(1/sqrt(epsilon)) until omega_1, from a rounding error to a size that tears slow runs apart.
+"""
 
 OMEGA_RAT = 3e10
 """Terminal angular velocity [rad/s] of Eq. 24 (Sect. 7 of the paper)."""
@@ -51,8 +48,9 @@ _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
 
 
-class Drive(NamedTuple):
-    """Parameters of a drive, as compiled code takes them.
+@part
+class Rotating(NamedTuple):
+    """The drive; made by `rotating`.
 
     Attributes
     ----------
@@ -80,8 +78,50 @@ class Drive(NamedTuple):
     explicit_coriolis: bool
     spin_terms: bool
 
+    def turning(self):
+        # without the outer torque the grain stays behind the frame
+        return not self.torque
 
-def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriolis=None):
+    def follow(self, state, changed):
+        fragments = label_fragments(state)
+        state.drive[FRAGMENTS] = fragments
+        omega, acceleration = angular_velocity(self, state.scalar[TIME])
+        state.drive[OMEGA] = omega
+        state.drive[ACCELERATION] = acceleration
+        if changed:
+            # They were those of the old fragment; nothing can be foretold of the new one before its first step.
+            state.drive[UNWIND] = 0.0
+            state.drive[EXCESS] = math.nan
+            centre(state)
+
+    def leave(self, state, law):
+        if state.drive[FRAGMENTS] < 2.0:
+            return 0
+        return drop_departed(state, law, np.int64(state.drive[FRAGMENTS]))
+
+    def sample(self, state, law):
+        state.drive[STRESS_SUM] += total_stress(state, law)
+        state.drive[STRESS_SAMPLES] += 1.0
+        if state.counter[STEPS] % CENTRE_EVERY == 0:
+            centre(state)
+
+    def move(self, state, box, kick, dt):
+        drive, scalar = state.drive, state.scalar
+        omega, domega, unwind = drive[OMEGA], drive[ACCELERATION], drive[UNWIND]
+        momentum, inertia, fastest = kick_and_drift(
+            state.monomer, state.force, state.counter[MONOMERS], kick, dt, omega, domega, unwind, self
+        )
+        if self.torque:
+            # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
+            drive[TORQUE_WORK] += (domega * kick + unwind) * (inertia * omega + momentum)
+            excess = momentum / inertia
+            drive[UNWIND] = turn_to_take_out(excess, drive[EXCESS], unwind)
+            drive[EXCESS] = excess
+        drive[OMEGA], drive[ACCELERATION] = angular_velocity(self, scalar[TIME] + dt)
+        scalar[FASTEST] = fastest if abs(momentum) < np.inf else math.nan
+
+
+def rotating(name, *, omega_1, epsilon=None, angular_acceleration=None, coriolis=None):
     """Drive from the words that a user gives.
 
     Parameters
@@ -98,7 +138,7 @@ def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriol
 
     Returns
     -------
-    Drive
+    Rotating
 
     Raises
     ------
@@ -116,7 +156,7 @@ def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriol
         coriolis = "explicit" if literal else "exact"
     if coriolis not in CORIOLIS:
         raise InputError(f"coriolis is {coriolis!r}; allowed are {', '.join(CORIOLIS)}.")
-    return Drive(
+    return Rotating(
         law=CONSTANT_EPSILON if angular_acceleration is None else EXPONENTIAL,
         epsilon=float(epsilon or 0.0),
         omega_1=float(omega_1),
@@ -127,17 +167,13 @@ def make_drive(name, *, omega_1, epsilon=None, angular_acceleration=None, coriol
     )
 
 
-AT_REST = Drive(EXPONENTIAL, 0.0, 1.0, 0.0, False, False, False)
-"""A frame that does not turn: for the relaxation before the spin-up, and for free aggregates."""
-
-
 @jit
 def angular_velocity(drive, time):
     """omega [rad/s] and d omega/dt [rad/s2] at a time [s].
 
     Parameters
     ----------
-    drive : Drive
+    drive : Rotating
     time : float
         Since the start from rest [s].
 
@@ -169,117 +205,8 @@ def angular_velocity(drive, time):
     return omega, drive.epsilon * omega**2
 
 
-class TurningStep(NamedTuple):
-    """What one step in the turning frame is for all monomers alike; made by `turning_step`.
-
-    Attributes
-    ----------
-    square : float
-        omega^2.
-    domega : float
-        d omega/dt [rad/s2] that the velocities feel.
-    alpha : float
-        Angular acceleration [rad/s2] that the outer torque gives the largest fragment, 0 without it.
-    two_omega_dt, cos_v, sin_v : float
-        Angle by which the Coriolis force turns a velocity, its cosine and sine.
-    cos_w, sin_w : float
-        The same of the turning of a spin.
-    spin_euler : float
-        What the Euler term takes from a spin [rad/s].
-    explicit_coriolis : bool
-        See `Drive`.
-    """
-
-    square: float
-    domega: float
-    alpha: float
-    two_omega_dt: float
-    cos_v: float
-    sin_v: float
-    cos_w: float
-    sin_w: float
-    spin_euler: float
-    explicit_coriolis: bool
-
-
-@jit(forceinline=True)
-def turning_step(dt, omega, domega, unwind, drive):
-    """`TurningStep` from the arguments of `kick_and_drift`."""
-    cos_w = 1.0
-    sin_w = 0.0
-    spin_euler = 0.0
-    if drive.spin_terms:
-        cos_w = math.cos(omega * dt)
-        sin_w = math.sin(omega * dt)
-        spin_euler = -domega * dt
-    alpha = 0.0
-    if drive.torque:
-        alpha = domega + unwind / dt
-    return TurningStep(
-        omega * omega, domega, alpha,
-        2.0 * omega * dt, math.cos(2.0 * omega * dt), math.sin(2.0 * omega * dt),
-        cos_w, sin_w, spin_euler, drive.explicit_coriolis,
-    )  # fmt: skip
-
-
-@jit(forceinline=True)
-def kick_and_drift_one(monomer, force, r, q, dt, turn):
-    """Move the monomer of row `r` by one step, and clear its force, row `q`; see `kick_and_drift`.
-
-    Returns
-    -------
-    angular_momentum, inertia : float
-        What it adds to those of the largest fragment.
-    square : float
-        Square of its speed in the frame [m2/s2].
-    """
-    h = 0.5 * dt
-    x = monomer[r + X]
-    y = monomer[r + Y]
-    driven = monomer[r + DRIVEN]
-    inv_mass = monomer[r + INV_MASS]
-    euler = turn.alpha * driven - turn.domega
-    ax = force[q + FORCE_X] * inv_mass + turn.square * x - euler * y
-    ay = force[q + FORCE_Y] * inv_mass + turn.square * y + euler * x
-    vx = monomer[r + VX]
-    vy = monomer[r + VY]
-    vz = monomer[r + VZ] + dt * force[q + FORCE_Z] * inv_mass
-    if turn.explicit_coriolis:
-        vx, vy = vx + dt * ax + turn.two_omega_dt * vy, vy + dt * ay - turn.two_omega_dt * vx
-    else:
-        px = vx + h * ax
-        py = vy + h * ay
-        vx = turn.cos_v * px + turn.sin_v * py + h * ax
-        vy = turn.cos_v * py - turn.sin_v * px + h * ay
-
-    inv_inertia = dt * monomer[r + INV_INERTIA]
-    hx = 0.5 * inv_inertia * force[q + TORQUE_X]
-    hy = 0.5 * inv_inertia * force[q + TORQUE_Y]
-    ux = monomer[r + WX] + hx
-    uy = monomer[r + WY] + hy
-    wx = turn.cos_w * ux + turn.sin_w * uy + hx
-    wy = turn.cos_w * uy - turn.sin_w * ux + hy
-    wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + turn.spin_euler + turn.alpha * dt * driven
-
-    mass = driven * monomer[r + MASS]
-    own = driven * monomer[r + INERTIA]
-    monomer[r + VX] = vx
-    monomer[r + VY] = vy
-    monomer[r + VZ] = vz
-    monomer[r + WX] = wx
-    monomer[r + WY] = wy
-    monomer[r + WZ] = wz
-    monomer[r + X] = x + dt * vx
-    monomer[r + Y] = y + dt * vy
-    monomer[r + Z] += dt * vz
-    for number in range(FORCE_ROW):  # the whole row, which is one store
-        force[q + np.uint64(number)] = 0.0
-    momentum = mass * (x * vy - y * vx) + own * wz
-    return momentum, mass * (x * x + y * y) + own, vx * vx + vy * vy + vz * vz
-
-
 @jit
-def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
+def kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, drive):
     """Move all monomers by one step in the frame that turns with omega about z, and clear the forces.
 
     Velocities stand half a step behind the positions (leapfrog).
@@ -290,15 +217,15 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
         See `State`.
     n : int
         Number of monomers.
-    dt : float
-        Step [s].
+    kick, dt : float
+        Duration of the kick and of the move that follows [s].
     omega, domega : float
         Angular velocity [rad/s] of the frame and its rate of change [rad/s2], at the time of the positions.
     unwind : float
         Rigid rotation [rad/s] that the outer torque gives the largest fragment in this step, so that it has no angular
         momentum about z in the frame after it: minus what it had after the last step and what this step puts in, over
         its moment of inertia.
-    drive : Drive
+    drive : Rotating
 
     Returns
     -------
@@ -311,7 +238,7 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
 
     Notes
     -----
-    Eqs. 19-21, 29, 30 with the terms that they lack (docs/model.md): the centrifugal force m omega^2 (x, y, 0), the
+    Eqs. 19-21, 29, 30 with the terms that they lack: the centrifugal force m omega^2 (x, y, 0), the
     Coriolis force -2 m omega x v, the Euler force -m (d omega/dt) x X, their counterparts for the spin
     (-I omega x w, -I d omega/dt), and for the largest fragment the body force m alpha x X with I alpha on the spin.
     alpha is d omega/dt, which cancels the Euler force, plus what keeps the angular momentum in the frame zero.
@@ -320,18 +247,66 @@ def kick_and_drift(monomer, force, n, dt, omega, domega, unwind, drive):
     -omega dt likewise. The body force has to be part of these kicks: if the torque followed a step later, or after the
     turn, vibrations along the radius would lose energy at a rate ~ omega^2 dt.
     """
-    turn = turning_step(dt, omega, domega, unwind, drive)
-    angular_momentum = 0.0
+    cos_w, sin_w, spin_euler = 1.0, 0.0, 0.0
+    if drive.spin_terms:
+        cos_w, sin_w, spin_euler = math.cos(omega * kick), math.sin(omega * kick), -domega * kick
+    alpha = 0.0
+    if drive.torque:
+        alpha = domega + unwind / kick
+    angle = 2.0 * omega * kick
+    cos_v, sin_v = math.cos(angle), math.sin(angle)
+    explicit = drive.explicit_coriolis
+    h = 0.5 * kick
+    # Lanes x, y, z; the fourth of the positions is the radius, of the spins DRIVEN, and both stay. (y, x) times
+    # (-s, s) is a quarter turn.
+    centrifugal = vector4(h * omega * omega, h * omega * omega, 0.0, 0.0)
+    euler = vector4(h * domega, -h * domega, 0.0, 0.0)
+    driving = vector4(-h * alpha, h * alpha, 0.0, 0.0)
+    coriolis = vector4(angle, -angle, 0.0, 0.0)
+    cos4_v, sin4_v = vector4(cos_v, cos_v, 1.0, 1.0), vector4(sin_v, -sin_v, 0.0, 0.0)
+    cos4_w, sin4_w = vector4(cos_w, cos_w, 1.0, 1.0), vector4(sin_w, -sin_w, 0.0, 0.0)
+    spin_driving = vector4(0.0, 0.0, alpha * kick, 0.0)
+    spin_lag = vector4(0.0, 0.0, spin_euler, 0.0)
+    nothing = vector4(0.0, 0.0, 0.0, 0.0)
+    orbital, spinning, spread = nothing, nothing, nothing
     inertia = 0.0
     fastest = 0.0
     for k in range(n):
-        momentum_k, inertia_k, speed = kick_and_drift_one(
-            monomer, force, np.uint64(k) * _ROW, np.uint64(k) * _FORCE_ROW, dt, turn
-        )
-        angular_momentum += momentum_k
-        inertia += inertia_k
-        fastest = max(fastest, speed)
-    return angular_momentum, inertia, math.sqrt(fastest)
+        r = np.uint64(k) * _ROW
+        q = np.uint64(k) * _FORCE_ROW
+        driven = monomer[r + DRIVEN]
+        x = load4(monomer, r + X)
+        v = load4(monomer, r + VX)
+        across = swap4(x)
+        ha = scale4(h * monomer[r + INV_MASS], load4(force, q + FORCE_X))
+        ha = add4(ha, multiply4(centrifugal, x))
+        ha = add4(ha, multiply4(add4(euler, scale4(driven, driving)), across))
+        p = add4(v, ha)
+        if explicit:
+            v = add4(add4(p, multiply4(coriolis, swap4(v))), ha)
+        else:
+            v = add4(add4(multiply4(cos4_v, p), ha), multiply4(sin4_v, swap4(p)))
+        t = scale4(h * monomer[r + INV_INERTIA], load4(force, q + TORQUE_X))
+        p = add4(load4(monomer, r + WX), t)
+        w = add4(add4(multiply4(cos4_w, p), add4(t, spin_lag)), multiply4(sin4_w, swap4(p)))
+        w = add4(w, scale4(driven, spin_driving))
+
+        store4(monomer, r + X, add4(x, scale4(dt, v)))
+        store4(monomer, r + VX, v)
+        store4(monomer, r + WX, w)
+        store4(force, q + FORCE_X, nothing)
+        store4(force, q + TORQUE_X, nothing)
+        mass = driven * monomer[r + MASS]
+        own = driven * monomer[r + INERTIA]
+        orbital = add4(orbital, multiply4(scale4(mass, v), across))
+        spread = add4(spread, multiply4(scale4(mass, across), across))
+        spinning = add4(spinning, scale4(own, w))
+        inertia += own
+        fastest = max(fastest, square4(v))
+    backward, forward, _, _ = numbers4(orbital)
+    momentum = forward - backward + numbers4(spinning)[2]
+    across_x, across_y, _, _ = numbers4(spread)
+    return momentum, inertia + across_x + across_y, math.sqrt(fastest)
 
 
 @jit
@@ -355,3 +330,95 @@ def turn_to_take_out(excess, last_excess, last_unwind):
     if last_excess == last_excess:
         put_in = excess - last_excess - last_unwind
     return -excess - put_in
+
+
+@jit
+def centre(state):
+    """Mark the largest fragment as driven, and move the origin to its centre of mass.
+
+    The origin takes the centre's velocity as well, which is an inertial motion, so that the terms of the turning
+    frame keep their form.
+    """
+    n = state.counter[MONOMERS]
+    monomer = state.monomer
+    mass = 0.0
+    sums = np.zeros(6)
+    for k in range(n):
+        r = np.uint64(k) * _ROW
+        if state.fragment[k] == 0:
+            monomer[r + DRIVEN] = 1.0
+            m = monomer[r + MASS]
+            mass += m
+            sums[0] += m * monomer[r + X]
+            sums[1] += m * monomer[r + Y]
+            sums[2] += m * monomer[r + Z]
+            sums[3] += m * monomer[r + VX]
+            sums[4] += m * monomer[r + VY]
+            sums[5] += m * monomer[r + VZ]
+        else:
+            monomer[r + DRIVEN] = 0.0
+    sums /= mass
+    for k in range(n):
+        r = np.uint64(k) * _ROW
+        monomer[r + X] -= sums[0]
+        monomer[r + Y] -= sums[1]
+        monomer[r + Z] -= sums[2]
+        monomer[r + VX] -= sums[3]
+        monomer[r + VY] -= sums[4]
+        monomer[r + VZ] -= sums[5]
+
+
+@jit
+def drop_departed(state, law, fragments):
+    """Drop the fragments that have left for good, noting their mass and number of monomers.
+
+    A fragment has left when all of it lies outside the sphere around the centre of mass that holds the largest
+    fragment, and its own centre of mass recedes. Centres of mass of free bodies go straight in the inertial frame, so
+    that such a fragment meets the largest no more, unless it is long and reaches back with an end as it turns.
+
+    Parameters
+    ----------
+    state : State
+    law : part
+    fragments : int
+        Number of fragments, as `label_fragments` has labelled them.
+
+    Returns
+    -------
+    int
+        Number of fragments dropped. The arrays hold the remaining monomers in their old order.
+    """
+    n = state.counter[MONOMERS]
+    monomer = state.monomer
+    outer = 0.0
+    nearest = np.full(fragments, np.inf)
+    mass = np.zeros(fragments)
+    members = np.zeros(fragments, dtype=np.int64)
+    centre = np.zeros((fragments, 6))
+    for k in range(n):
+        r = np.uint64(k) * _ROW
+        f = state.fragment[k]
+        distance = math.sqrt(monomer[r + X] ** 2 + monomer[r + Y] ** 2 + monomer[r + Z] ** 2)
+        if f == 0:
+            outer = max(outer, distance + monomer[r + RADIUS])
+        nearest[f] = min(nearest[f], distance - monomer[r + RADIUS])
+        m = monomer[r + MASS]
+        mass[f] += m
+        members[f] += 1
+        for axis in range(3):
+            offset = np.uint64(axis)
+            centre[f, axis] += m * monomer[r + X + offset]
+            centre[f, 3 + axis] += m * monomer[r + VX + offset]
+    gone = np.zeros(fragments, dtype=np.bool_)
+    dropped = 0
+    for f in range(1, fragments):
+        receding = centre[f, 0] * centre[f, 3] + centre[f, 1] * centre[f, 4] + centre[f, 2] * centre[f, 5] > 0.0
+        if nearest[f] > outer and receding:
+            gone[f] = True
+            dropped += 1
+            note_lost(state, mass[f], members[f])
+    if dropped == 0:
+        return 0
+
+    drop(state, law, gone)
+    return dropped

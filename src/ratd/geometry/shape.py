@@ -21,6 +21,7 @@ __all__ = [
     "principal_axes",
     "semi_axes",
     "shape_of",
+    "spin_share",
 ]
 
 INNER_PART = 0.6
@@ -378,6 +379,26 @@ def fractal_dimension(position, mass):
     return float(3.0 + slope), math.sqrt((residual @ residual) / ((shells - 2) * (x @ x)))
 
 
+def spin_share(radius, density, moment_1):
+    """Share of the monomers' own moments of inertia in that of the whole, I_spin/(I_orbit + I_spin).
+
+    Parameters
+    ----------
+    radius : array_like, shape (n,)
+        Radii of the monomers [m].
+    density : float
+        [kg m-3].
+    moment_1 : float
+        Greatest moment of inertia I_1 of the grain, that of the monomers included [kg m2].
+
+    Returns
+    -------
+    float
+        sum(2/5 m_i a_i^2)/I_1 (docs/model.md, The two drives).
+    """
+    return float(np.sum(8.0 / 15.0 * np.pi * density * np.asarray(radius) ** 5) / moment_1)
+
+
 def mean_coordination(n_monomers, n_contacts):
     """Contacts per monomer, 2 N_con/N_mon [1]."""
     return 2.0 * n_contacts / n_monomers
@@ -403,6 +424,8 @@ class Shape:
         Radius of the smallest enclosing sphere [m].
     mean_coordination : float
         Contacts per monomer [1].
+    spin_share : float
+        Share of the monomers' own moments of inertia in I_1 [1].
     """
 
     moments: np.ndarray
@@ -415,6 +438,7 @@ class Shape:
     fractal_dimension_error: float
     enclosing_radius: float
     mean_coordination: float
+    spin_share: float
 
     @property
     def filling_factor(self):
@@ -455,4 +479,5 @@ class Shape:
             fractal_dimension_error=error,
             enclosing_radius=enclosing_radius(position, radius),
             mean_coordination=mean_coordination(len(radius), n_contacts),
+            spin_share=spin_share(radius, density, moments[0]),
         )

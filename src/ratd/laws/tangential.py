@@ -17,12 +17,12 @@ TWISTING_LIMIT = 1.0 / (16.0 * math.pi)
 
 
 @jit
-def sliding_stiffness(equilibrium_contact_radius, shear_modulus, poisson_number):
-    """k_s [N m-1] = 8 r0 G*, with G* = G/(2(2 - nu)) for two equal materials (Mindlin).
+def sliding_stiffness(equilibrium_contact_radius, sliding_modulus):
+    """k_s [N m-1] = 8 r0 G*, with G* = G/(2(2 - nu)) for two equal materials (Mindlin 1949).
 
-    Printed with G* = G/(2 - 2 nu^2), 1.9 times stiffer (docs/model.md; Eq. 13).
+    Printed with G* = G/(2 - 2 nu^2), 1.9 times stiffer (Reissl et al. 2024, Eq. 13).
     """
-    return 8.0 * equilibrium_contact_radius * shear_modulus / (2.0 * (2.0 - poisson_number))
+    return 8.0 * equilibrium_contact_radius * sliding_modulus
 
 
 @jit
@@ -38,9 +38,9 @@ def rolling_stiffness(pull_off_force, reduced_radius):
 
 
 @jit
-def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
-    """k_t [N m rad-1] = 16/3 G' r0^3 with G' = G/2 for equal materials (printed G*; docs/model.md, Eq. 17)."""
-    return 8.0 / 3.0 * shear_modulus * equilibrium_contact_radius**3
+def twisting_stiffness(equilibrium_contact_radius, twisting_modulus):
+    """k_t [N m rad-1] = 16/3 G' r0^3 with G' = G/2 for equal materials (printed G*; Reissl et al. 2024, Eq. 17)."""
+    return 16.0 / 3.0 * twisting_modulus * equilibrium_contact_radius**3
 
 
 @jit(forceinline=True)

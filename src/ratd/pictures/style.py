@@ -233,7 +233,7 @@ def mean_and_range(axes, x, cells, name, style, label=None):
     x : array_like
         Places of the cells on the axis.
     cells : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.cell_statistics` returns.
+        What `ratd.experiments.spin_up.cells.cell_statistics` returns.
     name : str
         Column of the grain table; cells without a value are left out.
     style : dict

@@ -31,8 +31,8 @@ HOMES = {
     **dict.fromkeys(("table1", "table2"), "ratd.experiments.spin_up.composition"),
     "parameters": "ratd.experiments.spin_up.parameters",
     "calibration": "ratd.experiments.spin_up.calibration",
-    "formulae": "ratd.experiments.spin_up.formula_table",
-    "pairs": "ratd.experiments.spin_up.pair",
+    "formulae": "ratd.experiments.spin_up.formulae",
+    "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
     **{
         f"validation_{check}": f"ratd.validation.{check}"

@@ -9,10 +9,12 @@ to that of a grazing hit.
 
 import numpy as np
 
-from ratd.aggregates import growth
+from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.growth import MIGRATIONS, TYPES, grow, grow_with_radii
-from ratd.base.materials import equilibrium_compression, get_material, reduced_radius
+from ratd.base.materials import get_material
 from ratd.base.statistics import rank_correlation
+from ratd.geometry.directions import random_direction, random_normal
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 from ratd.validation.tables import table_kind
 
 MONOMER_RADIUS = 20e-9
@@ -81,13 +83,13 @@ def arrival(radius, material, seed):
     """
     constants = material.surface_energy, material.reduced_modulus
     radii = np.full(2, radius)
-    place = growth._aggregate(radii, *constants, 0, False, np.random.Generator(np.random.PCG64(seed)))[1]
+    place = place_monomers(radii, *constants, 0, False, np.random.Generator(np.random.PCG64(seed)))[1]
     touching = 2.0 * radius - equilibrium_compression(reduced_radius(radius, radius), *constants)
     again = np.random.Generator(np.random.PCG64(seed))
     aside = np.inf
     while aside >= touching:
-        direction = np.array(growth._random_direction(again))
-        normal = np.array(growth._random_normal(*direction, again))
+        direction = np.array(random_direction(again))
+        normal = np.array(random_normal(*direction, again))
         aside = 2.0 * radius * np.sqrt(again.random())
     across = place - (place @ direction) * direction
     if place @ direction > 0.0 or np.linalg.norm(across - aside * normal) > 1e-9 * touching:

@@ -11,7 +11,7 @@ import numpy as np
 from ratd.aggregates.growth import grow
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
-from ratd.experiments.spin_up.solid import solid_omega, spin_share, turned_by_spins
+from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
@@ -55,7 +55,7 @@ def compute(settings, progress=None):
         Rows of `COLUMNS`. With the exact Coriolis term only the two greatest parts and the longest step are run.
     """
     grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
-    share = spin_share(grain)
+    share = grain.shape.spin_share
     parts, factors = sorted(settings["part_of_limit"]), sorted(settings["timestep_factor"])
     reference = _row(grain, share, drive="prescribed", **REFERENCE)
     rows = [reference]

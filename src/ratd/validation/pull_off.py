@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.pair import eq35_omega, force_controlled_omega, parting_omega
+from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega, parting_omega
 from ratd.validation.tables import table_kind
 from ratd.validation.vibrating_pair import adiabatic_omega, vibrating_omega
 

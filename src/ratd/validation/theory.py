@@ -3,9 +3,10 @@
 import math
 
 from ratd.aggregates.growth import grow
-from ratd.experiments.spin_up.bound import cut_bound, midplane_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.tensile import midplane_bound
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")

@@ -6,20 +6,18 @@ import pytest
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.beyond import (
-    MONOMER_CLASSES,
-    SEPARATE,
-    binomial_interval,
-    cross_validation,
+from ratd.experiments.spin_up.cross_validation import SEPARATE, cross_validation
+from ratd.experiments.spin_up.eq33 import (
+    PAPER_MEAN_RADIUS,
+    eq33,
     eq33_omega,
+    fit_ensemble,
     fitted_numbers,
-    fragment_shares,
-    oblate_counts,
-    power_law,
-    size_law,
-    slopes,
+    radius_of_reading,
 )
-from ratd.experiments.spin_up.ensemble import PAPER_MEAN_RADIUS, eq33, fit_ensemble, radius_of_reading
+from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, fragment_shares, power_law
+from ratd.experiments.spin_up.oblateness import oblate_counts
+from ratd.experiments.spin_up.size_law import size_law, slopes
 from synthetic_runs import make_table
 
 SIZES = tuple(50e-9 * k for k in range(1, 9))
@@ -196,13 +194,6 @@ def test_a_side_without_an_error_leaves_the_change_without_one():
     found = slopes(pd.concat([below[(below["a_eff"] < 290e-9) | (below["seed"] == 0)], above])).iloc[0]
     assert np.isfinite([found["below_error"], found["change"]]).all()
     assert np.isnan(found["above_error"]) and np.isnan(found["change_error"])
-
-
-def test_binomial_intervals_of_wilson():
-    assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
-    assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
-    assert binomial_interval(10, 10)[1] == 1.0 and binomial_interval(0, 10)[0] == 0.0
-    assert np.isnan(binomial_interval(0, 0)).all()
 
 
 def test_oblate_grains_are_counted_at_both_times():

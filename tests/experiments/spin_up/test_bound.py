@@ -7,18 +7,17 @@ import naive_geometry as naive
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow, grow_with_radii
 from ratd.base.errors import InputError
-from ratd.base.materials import equilibrium_compression, get_material, pull_off_force
-from ratd.experiments.spin_up.bound import (
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.cut_bound import (
     contact_strengths,
     cut_bound,
     least_bridge_cut,
     least_plane_cut,
-    midplane_bound,
-    midplane_tension,
     plane_normals,
-    tensile_strength_tatsuuma2019,
 )
+from ratd.experiments.spin_up.tensile import midplane_bound, midplane_tension, tensile_strength_tatsuuma2019
 from ratd.geometry.shape import principal_axes
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force
 
 
 def small_grain(type, n, seed):

@@ -10,21 +10,17 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
-from ratd.experiments.spin_up.ensemble import (
-    COLUMNS,
+from ratd.experiments.spin_up.cells import cell_statistics, sort_cells
+from ratd.experiments.spin_up.eq33 import (
     TABLE_3,
-    cell_statistics,
     eq33,
     fit_as_configured,
     fit_ensemble,
-    grain_table,
     radius_of_reading,
-    sort_cells,
-    spin_share,
     table3,
     table3_dataset,
-    table_dataset,
 )
+from ratd.experiments.spin_up.grain_table import COLUMNS, grain_table, table_dataset
 from ratd.experiments.spin_up.marks import VARIABLES, disruption
 from synthetic_runs import make_run, make_table
 
@@ -328,12 +324,12 @@ def test_sparse_ensembles_say_what_is_missing(table):
 
 
 def test_material_of_ones_own(table):
-    rows = table[table["material"] == "q-S"].assign(material="ice")
-    with pytest.raises(InputError, match="ice"):
+    rows = table[table["material"] == "q-S"].assign(material="snow")
+    with pytest.raises(InputError, match="snow"):
         fit_ensemble(rows)
     q_s = get_material("q-S")
-    ice = Material("ice", 4 * q_s.surface_energy, q_s.youngs_modulus, q_s.poisson_number, q_s.density)
-    best = fit_ensemble(rows, n_bootstrap=5, materials={"ice": ice})
+    ice = Material("snow", 4 * q_s.surface_energy, q_s.youngs_modulus, q_s.poisson_number, q_s.density)
+    best = fit_ensemble(rows, n_bootstrap=5, materials={"snow": ice})
     expected = fit_ensemble(table[table["material"] == "q-S"], n_bootstrap=5)
     np.testing.assert_allclose(best["A"].values, expected["A"].values / 2, rtol=1e-12)
 
@@ -402,10 +398,3 @@ def test_tables_as_datasets_survive_netcdf(tmp_path, table, fit):
     assert cells["omega_disr_mean"].attrs["units"] == "rad s-1"
     assert cells["omega_disr_count"].attrs["units"] == "1"
     assert cells["n_contacts_maximum"].attrs["long_name"] == "maximum of: number of contacts"
-
-
-def test_share_of_the_spins_of_two_equal_spheres():
-    # each 2/5 m a^2 of its own, and m a^2 for its way around the middle
-    a, density = 30e-9, 2000.0
-    mass = 4 / 3 * np.pi * density * a**3
-    assert spin_share([a, a], density, 2 * (0.4 + 1.0) * mass * a**2) == pytest.approx(0.8 / 2.8)

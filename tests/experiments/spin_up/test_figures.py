@@ -21,8 +21,8 @@ from matplotlib.transforms import Bbox
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.experiments.spin_up.bound import tensile_strength_tatsuuma2019
-from ratd.experiments.spin_up.ensemble import TABLE_3, cell_statistics, eq33, fit_ensemble
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import eq33, fit_ensemble
 from ratd.experiments.spin_up.figures.figure2 import figure2
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.figures.figure6 import axis_ratios, figure6
@@ -30,8 +30,9 @@ from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure10 import figure10
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.pair import force_controlled_omega
-from ratd.experiments.spin_up.tensile import predictions
+from ratd.experiments.spin_up.pairs import force_controlled_omega
+from ratd.experiments.spin_up.printed import TABLE_3
+from ratd.experiments.spin_up.tensile import predictions, tensile_strength_tatsuuma2019
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,

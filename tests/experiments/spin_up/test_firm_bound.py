@@ -7,10 +7,11 @@ import naive_geometry as naive
 from ratd import disruption, spin_up
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow, grow_with_radii
-from ratd.base.materials import equilibrium_compression, get_material
-from ratd.experiments.spin_up.bound import cut_bound, plane_normals
+from ratd.base.materials import get_material
+from ratd.experiments.spin_up.cut_bound import cut_bound, plane_normals
 from ratd.experiments.spin_up.firm_bound import bridge_pulls, firm_bound, slide_forces
 from ratd.geometry.shape import principal_axes
+from ratd.laws.contact_constants import equilibrium_compression
 
 
 def small_grain(type, n, seed):

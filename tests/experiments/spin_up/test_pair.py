@@ -6,7 +6,7 @@ import pytest
 
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.figures.figure10 import figure10, relative_error
-from ratd.experiments.spin_up.pair import PAIR_COLUMNS, force_controlled_omega, holding_omega, pairs
+from ratd.experiments.spin_up.pairs import PAIR_COLUMNS, force_controlled_omega, holding_omega, pairs
 from ratd.pipeline import io
 
 HOW = {"damped": {"epsilon": 0.02, "timestep_factor": 0.05}, "undamped": {"epsilon": 0.05, "timestep_factor": 0.05}}

@@ -15,7 +15,7 @@ from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.parameters import PARAMETER_COLUMNS, effect, parameter_table, ways
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.run import spin_up
-from ratd.experiments.spin_up.variations import of_material, spin_up_ways, steps_to, way_material
+from ratd.experiments.spin_up.same_grains import of_material, spin_up_ways, steps_to, way_material
 from ratd.pipeline import blocks, io
 from ratd.pipeline.jobs import Job
 

@@ -6,9 +6,9 @@ import pytest
 
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments.spin_up.seeds import size_label
 from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, check, load
 from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.seeds import size_label
 from ratd.pipeline import config as configs
 from ratd.pipeline.config import merge
 from tiny_pipeline import ROOT
@@ -401,11 +401,11 @@ def materials_file(tmp_path, text):
 
 
 def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
-    ice = "ice: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
-    half = "half: {mix: {ice: 0.5, q-S: 0.5}}\n"
-    plan = with_changes(materials_file(tmp_path, ice + half) | {"materials": ["ice", "half", *MATERIALS_OF_FIGURES]})
-    assert plan.material("ice")["youngs_modulus"] == pytest.approx(7e9)
-    assert plan.material("ice")["viscous_time"] == MATERIALS["a-C"].viscous_time
+    snow = "snow: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
+    half = "half: {mix: {snow: 0.5, q-S: 0.5}}\n"
+    plan = with_changes(materials_file(tmp_path, snow + half) | {"materials": ["snow", "half", *MATERIALS_OF_FIGURES]})
+    assert plan.material("snow")["youngs_modulus"] == pytest.approx(7e9)
+    assert plan.material("snow")["viscous_time"] == MATERIALS["a-C"].viscous_time
     assert plan.material("half")["density"] == pytest.approx((1000 + 2650) / 2)
     assert plan.materials["q-S"] == MATERIALS["q-S"]
 
@@ -415,12 +415,12 @@ def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
     [
         ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
         ("a/b: {mix: {a-C: 1.0}}\n", "'a/b'; allowed: a name of letters"),
-        ("ice: {density_kg_m3: 1000}\n", "ice.surface_energy_mJ_m2 is missing; allowed: a number"),
-        ("ice: {mix: {a-C: 0.4}}\n", "add up to 1"),
-        ("ice: {mix: {b-C: 1.0}}\n", "b-C"),
-        ("ice: {mix: {a-C: 1.0}, density_kg_m3: 5}\n", "with the one key mix"),
-        ("ice: {gamma: 1}\n", "the key 'gamma' in ice is unknown"),
-        ("ice: 5\n", "ice is 5; allowed: a mapping"),
+        ("snow: {density_kg_m3: 1000}\n", "snow.surface_energy_mJ_m2 is missing; allowed: a number"),
+        ("snow: {mix: {a-C: 0.4}}\n", "add up to 1"),
+        ("snow: {mix: {b-C: 1.0}}\n", "b-C"),
+        ("snow: {mix: {a-C: 1.0}, density_kg_m3: 5}\n", "with the one key mix"),
+        ("snow: {gamma: 1}\n", "the key 'gamma' in snow is unknown"),
+        ("snow: 5\n", "snow is 5; allowed: a mapping"),
     ],
 )
 def test_what_is_wrong_with_a_material_is_named_with_the_file(tmp_path, text, said):

@@ -4,7 +4,7 @@ Only the pipeline imports this module, to find a kind of file (see `ratd.pipelin
 stands in `ratd.experiments.spin_up.run_files`, which needs no compiled code.
 """
 
-from ratd.experiments.spin_up import ensemble, fragmentation, marks, run
+from ratd.experiments.spin_up import fragmentation, grain_table, marks, records
 from ratd.experiments.spin_up.printed import PAPER
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
@@ -44,11 +44,11 @@ _SPINUP = {
     **row_sizes(_SPINUP_RAGGED),
     **{
         name: Variable(("record",), dtype, units, meaning, nan=name in _NAN)
-        for name, (units, meaning, dtype) in run.RECORDS.items()
+        for name, (units, meaning, dtype) in records.RECORDS.items()
     },
     **{
         name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
-        for name, (units, meaning) in run.FRAGMENTS.items()
+        for name, (units, meaning) in records.FRAGMENTS.items()
     },
     **over(("snapshot",), {"snapshot_omega": ("rad s-1", "angular velocity")}),
     **over(("monomer",), {"monomer_radius": ("m", "radius")}),
@@ -87,11 +87,11 @@ def _column(name, dimension, units, meaning):
     return Variable((dimension,), "f8", units, meaning, nan=True)
 
 
-_TABLE = {name: _column(name, "grain", *about) for name, about in ensemble.COLUMNS.items()}
+_TABLE = {name: _column(name, "grain", *about) for name, about in grain_table.COLUMNS.items()}
 
-_CELLS = {name: _column(name, "cell", *ensemble.COLUMNS[name]) for name in ("material", "type", "a_eff")}
+_CELLS = {name: _column(name, "cell", *grain_table.COLUMNS[name]) for name in ("material", "type", "a_eff")}
 _CELLS["n_grains"] = Variable(("cell",), "i8", "1", "grains in the cell")
-for _name, (_units, _meaning) in ensemble.COLUMNS.items():
+for _name, (_units, _meaning) in grain_table.COLUMNS.items():
     if _name not in (*_TEXT_COLUMNS, "a_eff", "seed"):
         for _statistic in ("mean", "minimum", "maximum"):
             _CELLS[f"{_name}_{_statistic}"] = _column(_name, "cell", _units, f"{_statistic} of: {_meaning}")

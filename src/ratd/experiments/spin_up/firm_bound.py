@@ -1,10 +1,10 @@
 """How fast an aggregate can turn at most if its contacts hold sideways too.
 
-`ratd.experiments.spin_up.bound.cut_bound` lets each contact of a cut pull with its pull-off force F_C and no more. A
-contact also holds up to F_S = k_s zeta_c sideways before it slides, whatever its normal force, and pushes without
-limit. A cut whose contacts cannot bear the load with all of that cannot hold, so that the least omega of all cuts is a
-bound for the aggregate as it stands. Only torques are left out, which could make it less. Where F_S is above F_C, as
-for all monomers from 10 nm on of the materials of the paper, it lies above the cut bound.
+`cut_bound` lets each contact of a cut pull with its pull-off force F_C and no more. A contact also holds up
+to F_S = k_s zeta_c sideways before it slides, whatever its normal force, and pushes without limit. A cut whose
+contacts cannot bear the load with all of that cannot hold, so that the least omega of all cuts is a bound for the
+aggregate as it stands. Only torques are left out, which could make it less. Where F_S is above F_C, as for all monomers
+from 10 nm on of the materials of the paper, it lies above the cut bound.
 """
 
 import math
@@ -14,10 +14,10 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.jit import jit
-from ratd.base.materials import equilibrium_contact_radius, reduced_radius
-from ratd.experiments.spin_up.bound import contact_strengths, plane_normals
+from ratd.experiments.spin_up.cut_bound import contact_strengths, plane_normals
 from ratd.experiments.spin_up.printed import PAPER
 from ratd.geometry.shape import centre_of_mass, principal_axes
+from ratd.laws.contact_constants import equilibrium_contact_radius, reduced_radius
 from ratd.laws.tangential import sliding_limit, sliding_stiffness
 from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
@@ -65,7 +65,7 @@ def firm_bound(grain, *, directions=500):
     and the line of centres, pointing out of the rest. Along Q the contact holds at most F_C cos(theta) + F_S
     sin(theta), and any force where theta is above a right angle, because it pushes then. A single contact bears Q by
     itself, its normal part with F_C and the other with F_S, which is stricter. The cuts are those of
-    `ratd.experiments.spin_up.bound.cut_bound`: every contact that alone holds two parts together, and planes.
+    `cut_bound`: every contact that alone holds two parts together, and planes.
 
     What is needed is balance of forces. Balance of torques, which rolling contacts hardly help, asks for more.
     """
@@ -98,8 +98,9 @@ def slide_forces(R, material):
         Eq. 13 at the limit zeta_c of sliding; with both in the form of `ratd.laws.tangential` G r_0^2/(4 pi).
     """
     r0 = equilibrium_contact_radius(R, material.surface_energy, material.reduced_modulus)
-    stiffness = sliding_stiffness(r0, material.shear_modulus, material.poisson_number)
-    return stiffness * sliding_limit(r0, material.poisson_number)
+    nu = material.poisson_number
+    stiffness = sliding_stiffness(r0, material.shear_modulus / (2.0 * (2.0 - nu)))
+    return stiffness * sliding_limit(r0, nu)
 
 
 def bridge_pulls(load, contacts):
@@ -108,7 +109,7 @@ def bridge_pulls(load, contacts):
     Parameters
     ----------
     load, contacts
-        As in `ratd.experiments.spin_up.bound.least_bridge_cut`.
+        As in `cut_bound.least_bridge_cut`.
 
     Returns
     -------

@@ -1,11 +1,12 @@
 """Which fragments leave a grain until it is disrupted, and how the mass is spread over them.
 
-A run notes each fragment when it has left for good (`ratd.experiments.spin_up.run.FRAGMENTS`). Two pieces of that
-list say how a grain falls apart: what left up to omega_disr, the peak of the stress, and what left while the first half
-of the mass went, which takes in the collapse itself (it follows the peak of the stress, and a piece that was cut off
-leaves a little later). Only these fragments are kept: what becomes of the largest one after that is a matter of the
-spin-up going on.
+A run notes each fragment when it has left for good (`records.FRAGMENTS`). Two pieces of that list say how a grain
+falls apart: what left up to omega_disr, the peak of the stress, and what left while the first half of the mass went,
+which takes in the collapse itself (it follows the peak of the stress, and a piece that was cut off leaves a little
+later). Only these fragments are kept: what becomes of the largest one after that is a matter of the spin-up going on.
 """
+
+import math
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,7 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 from ratd.base.statistics import equal_weights
-from ratd.experiments.spin_up.ensemble import cell_of
+from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
@@ -132,3 +133,111 @@ def fragment_table(dataset):
     table["half"] = before < HALF
     table["disruption"] = table["fragment_omega"] <= table["omega_disr"]
     return table
+
+
+MONOMER_BINS = (1, 2, 4, 11, np.inf)
+"""Edges of classes of fragments by number of monomers: 1, 2-3, 4-10, 11 and more."""
+
+MONOMER_CLASSES = ("1 monomer", "2–3", "4–10", "more than 10")
+
+
+def fragment_shares(fragments, stage, seed=0):
+    """Shares of fragments of different size in the mass and the number of those that left.
+
+    Parameters
+    ----------
+    fragments : pandas.DataFrame
+        From `fragmentation.fragment_table`.
+    stage : str
+        One of `fragmentation.STAGES`.
+    seed : int
+        Of the bootstrap over grains.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type and class: mass_share and number_share with `_error`, NaN for one grain; n_fragments, n_grains
+        (that lost any). Each fragment has the weight of its grain.
+    """
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    chosen = fragments[fragments[stage]]
+    for kind, part in chosen.groupby("type"):
+        which = np.digitize(part["fragment_n_monomers"], MONOMER_BINS) - 1
+        grain = pd.factorize(part["grain"])[0]
+        n = grain.max() + 1
+        mass, number = np.zeros((n, len(MONOMER_CLASSES))), np.zeros((n, len(MONOMER_CLASSES)))
+        np.add.at(mass, (grain, which), part["weight"] * part["mass_fraction"])
+        np.add.at(number, (grain, which), part["weight"])
+        drawn = rng.integers(n, size=(N_BOOTSTRAP, n))
+        shares = {}
+        for name, values in (("mass_share", mass), ("number_share", number)):
+            total = values[drawn].sum(axis=1)
+            error = np.std(total / total.sum(axis=1, keepdims=True), axis=0, ddof=1)
+            shares[name] = values.sum(axis=0) / values.sum()
+            shares[f"{name}_error"] = error if n > 1 else np.full_like(error, np.nan)
+        for k, label in enumerate(MONOMER_CLASSES):
+            own = {name: float(values[k]) for name, values in shares.items()}
+            rows.append({"type": kind, "class": label, **own, "n_fragments": len(part), "n_grains": int(n)})
+    return pd.DataFrame(rows)
+
+
+def power_law(sizes, largest, seed=0, replicates=200):
+    """Power law p(n) ~ n^-s of the monomers of fragments, n from 1 to the largest possible, and whether it fits.
+
+    Parameters
+    ----------
+    sizes : array_like of int
+        Monomers of each fragment.
+    largest : int
+        Greatest possible number.
+    seed : int
+    replicates : int
+        Made-up samples of the fitted law, for the probability.
+
+    Returns
+    -------
+    dict
+        exponent (greatest likelihood) and its error; distance (Kolmogorov and Smirnov); probability that a sample of
+        the law lies as far from its own fit, low where the law is not justified; n. NaN for fewer than 10 fragments.
+
+    References
+    ----------
+    Clauset, Shalizi & Newman (2009), SIAM Review 51, 661.
+    """
+    sizes = np.asarray(sizes, dtype=np.int64)
+    if len(sizes) < 10 or len(np.unique(sizes)) < 2:
+        return {"exponent": np.nan, "error": np.nan, "distance": np.nan, "probability": np.nan, "n": len(sizes)}
+    n = np.arange(1, int(max(largest, sizes.max())) + 1)
+    counts = np.bincount(sizes, minlength=len(n) + 1)[1:]
+    exponent, distance, law = _fit_power_law(counts, n)
+    spread = np.sum(law * np.log(n) ** 2) - np.sum(law * np.log(n)) ** 2
+    rng = np.random.Generator(np.random.PCG64(seed))
+    made = [_fit_power_law(rng.multinomial(len(sizes), law), n)[1] for _ in range(replicates)]
+    return {
+        "exponent": exponent,
+        "error": 1.0 / math.sqrt(spread * len(sizes)),
+        "distance": distance,
+        "probability": float(np.mean(np.array(made) >= distance)),
+        "n": len(sizes),
+    }
+
+
+def _fit_power_law(counts, n):
+    """Exponent of greatest likelihood, distance, probabilities.
+
+    The condition is that the mean of ln n be that of the sample. It falls with the exponent, its derivative is the
+    variance: Newton's steps, with bisection where one leaves the bracket.
+    """
+    share, log_n = counts / counts.sum(), np.log(n)
+    wanted = share @ log_n
+    low, high = -5.0, 15.0
+    exponent, step = 1.5, np.inf
+    while abs(step) > 1e-12 and high - low > 1e-12:
+        law = np.exp(-exponent * log_n)
+        law /= law.sum()
+        mean = law @ log_n
+        low, high = (exponent, high) if mean > wanted else (low, exponent)
+        step = (mean - wanted) / (law @ (log_n - mean) ** 2)
+        exponent = exponent + step if low < exponent + step < high else 0.5 * (low + high)
+    return exponent, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), law

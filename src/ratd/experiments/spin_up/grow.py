@@ -1,9 +1,10 @@
 """Blocks of grains that are grown for the spin-up: the stage `grow` of the pipeline."""
 
 from ratd.aggregates.files import grain_row
-from ratd.aggregates.growth import RadiusDistribution, grow
+from ratd.aggregates.growth import grow
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
-from ratd.experiments.spin_up.bound import cut_bound
+from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.pipeline.jobs import seeds_of
 
 __all__ = ["block", "grown"]

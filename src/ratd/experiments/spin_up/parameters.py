@@ -10,7 +10,17 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["MARKS", "PARAMETERS", "PARAMETER_COLUMNS", "beside_own", "effect", "parameter_table", "table", "ways"]
+__all__ = [
+    "MARKS",
+    "PARAMETERS",
+    "PARAMETER_COLUMNS",
+    "beside_own",
+    "effect",
+    "marks_row",
+    "parameter_table",
+    "table",
+    "ways",
+]
 
 PARAMETERS = {"xi_c": "critical_rolling_displacement", "T_vis": "viscous_time"}
 """Name of what is varied -> attribute of `ratd.Material`, and column of the table."""
@@ -33,6 +43,7 @@ PARAMETER_COLUMNS = {
 }
 """Units and meaning of the columns of `parameter_table`."""
 _GRAIN = ["material", "type", "drive", "a_eff", "seed"]
+"""What names a grain of such a table."""
 
 
 def ways(material, values):
@@ -78,9 +89,7 @@ def parameter_table(files):
     rows = []
     for parameter, material, grains in files:
         constants = {attribute: getattr(material, attribute) for attribute in PARAMETERS.values()}
-        for marks in grains:
-            grain = {name: marks.attrs[name] for name in _GRAIN}
-            rows.append({"parameter": parameter} | grain | constants | {name: float(marks[name]) for name in MARKS})
+        rows += [{"parameter": parameter} | constants | marks_row(marks) for marks in grains]
     table = pd.DataFrame(rows, columns=list(PARAMETER_COLUMNS))
     return beside_own(table, table["parameter"] == OWN, "its material as it is")
 
@@ -111,6 +120,11 @@ def table(files, settings, say):
     )
     say(f"{len(found)} runs")
     return {"parameters": as_dataset(found), "parameters_csv": found}
+
+
+def marks_row(marks):
+    """What names a grain and its `MARKS`, dict, from the marks of `ratd.disruption`."""
+    return {name: marks.attrs[name] for name in _GRAIN} | {name: float(marks[name]) for name in MARKS}
 
 
 def beside_own(table, own, words):

@@ -2,7 +2,8 @@
 
 import math
 
-from ratd.aggregates.growth import MOST_MONOMERS, RadiusDistribution, smallest_a_eff
+from ratd.aggregates.growth import MOST_MONOMERS, smallest_a_eff
+from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.experiments.spin_up.seeds import cell_of

@@ -4,9 +4,9 @@ from dataclasses import asdict
 from itertools import product
 
 from ratd.base.units import NM, PS
-from ratd.experiments.spin_up.seeds import Cells, size_label
-from ratd.experiments.spin_up.formula_table import DAMPING, FORMULAE
+from ratd.experiments.spin_up.formulae import DAMPING, FORMULAE
 from ratd.experiments.spin_up.parameters import ways
+from ratd.experiments.spin_up.seeds import Cells, size_label
 
 __all__ = ["Settings"]
 

@@ -5,17 +5,8 @@ from functools import cache
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ratd.experiments.spin_up import ensemble
-from ratd.geometry.shape import principal_axes
-
 SOLID_END = 2.5
 """omega/q (1 - share)^(2/3) by which Omega of `solid_omega` has grown without end, which it does at 1.515."""
-
-
-def spin_share(grain):
-    """`ratd.experiments.spin_up.ensemble.spin_share` of a grain about its axis a_1."""
-    moments, _ = principal_axes(grain.position, grain.mass, grain.radius)
-    return ensemble.spin_share(grain.radius, grain.material.density, moments[0])
 
 
 def turned_by_spins(omega, share, axis_b, axis_c):
@@ -26,7 +17,7 @@ def turned_by_spins(omega, share, axis_b, axis_c):
     omega : array_like, shape (n,)
         Of the frame [rad/s].
     share : float
-        From `spin_share`, of the grain at rest.
+        `ratd.geometry.shape.spin_share` of the grain at rest.
     axis_b, axis_c : array_like, shape (n,)
         Middle and longest semi-axis [m]; the first is that at rest.
 
@@ -54,7 +45,7 @@ def solid_omega(threshold, share, acceleration, timestep):
     threshold : float
         Angular velocity in the inertial frame at which it parts [rad/s].
     share : float
-        From `spin_share`.
+        `ratd.geometry.shape.spin_share`.
     acceleration : float
         d omega/dt [rad/s2].
     timestep : float

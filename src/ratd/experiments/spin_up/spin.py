@@ -1,8 +1,8 @@
 """Blocks of grains that are spun up: the stage `spin_up` of the pipeline, and its words of progress."""
 
 from ratd.aggregates.files import grains
-from ratd.experiments.spin_up.run_files import run_row
 from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.run_files import run_row
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.jobs import duration

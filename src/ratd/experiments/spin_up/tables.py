@@ -1,15 +1,10 @@
 """The tables of the ensemble, from the files of its grains: the stages `ensemble` and `grown` of the pipeline."""
 
-from ratd.experiments.spin_up.ensemble import (
-    cell_statistics,
-    fit_as_configured,
-    grain_table,
-    spin_share,
-    table3,
-    table3_dataset,
-    table_dataset,
-)
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import fit_as_configured, table3, table3_dataset
+from ratd.experiments.spin_up.grain_table import grain_table, table_dataset
 from ratd.experiments.spin_up.run_files import read_marks
+from ratd.geometry.shape import spin_share
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 
@@ -46,7 +41,7 @@ def ensemble(files, settings, say):
     files : mapping
         ``grains`` and ``marks``, lists of files.
     settings : dict
-        ``drive``, and those of `ratd.experiments.spin_up.ensemble.fit_as_configured`.
+        ``drive``, and those of `ratd.experiments.spin_up.eq33.fit_as_configured`.
     say : callable
         Called with a sentence.
 

@@ -1,16 +1,26 @@
 """Angular velocity of disruption from a tensile strength, the estimate that the simulations are compared with (Fig. 8).
 
 The strengths of Greenberg et al. and Seizinger et al. hold constants that the paper does not give; what is used of them
-is how they depend on the grain. That of Tatsuuma et al. has an absolute value, `ratd.experiments.spin_up.bound`.
+is how they depend on the grain. That of Tatsuuma et al. has an absolute value.
 """
+
+import math
 
 import numpy as np
 import pandas as pd
 
-from ratd.experiments.spin_up.bound import tensile_strength_tatsuuma2019
-from ratd.experiments.spin_up.ensemble import size_key
+from ratd.experiments.spin_up.cells import size_key
 
-__all__ = ["SCALINGS", "eq27", "fractal_exponent", "predictions", "tensile_strength_greenberg1995"]
+__all__ = [
+    "SCALINGS",
+    "eq27",
+    "fractal_exponent",
+    "midplane_bound",
+    "midplane_tension",
+    "predictions",
+    "tensile_strength_greenberg1995",
+    "tensile_strength_tatsuuma2019",
+]
 
 SEIZINGER_2013 = (1.6, 1.9)
 """Exponents of phi for quartz BA, BAM and hexagonal aggregates (Seizinger et al. 2013, A&A 559, A19)."""
@@ -38,9 +48,28 @@ def eq27(a_eff, tensile_strength, density):
     References
     ----------
     Reissl et al. (2024), A&A 692, A60, Eq. 27; Hoang (2020), Galaxies 8, 52. It takes the solid sphere of the same mass
-    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (see the module `bound`).
+    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (`midplane_bound`).
     """
     return 2.0 / np.asarray(a_eff) * np.sqrt(np.asarray(tensile_strength) / density)
+
+
+def tensile_strength_tatsuuma2019(surface_energy, monomer_radius, filling_factor):
+    """Tensile strength S = 0.951 gamma/a_mon phi^1.8 [Pa].
+
+    Parameters
+    ----------
+    surface_energy : float
+        gamma [J m-2].
+    monomer_radius : float
+        a_mon [m] (r_0 in the source: the radius of the monomers, not that of a contact).
+    filling_factor : float
+        phi [1].
+
+    Notes
+    -----
+    Tatsuuma, Kataoka & Tanaka 2019, ApJ 874, 159: a fit to pulled aggregates of equal monomers.
+    """
+    return 0.951 * surface_energy / monomer_radius * filling_factor**1.8
 
 
 def tensile_strength_greenberg1995(contacts_per_monomer, filling_factor, binding_energy, monomer_radius, overlap):
@@ -114,7 +143,7 @@ def predictions(cells, material, scaled_at, grown=None):
     Parameters
     ----------
     cells : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.cell_statistics` returns, of one material and type.
+        What `cells.cell_statistics` returns, of one material and type.
     material : ratd.Material
     scaled_at : float
         Size a_eff [m] at which a strength that is known up to a factor is scaled to the mean omega_disr of the cell.
@@ -166,3 +195,43 @@ def _at_rest(cells, grown):
     found = groups[list(_DEPENDS_ON)].mean().reindex(wanted)
     found["fractal_dimension"] = groups["fractal_dimension"].median()
     return {name: found[name].to_numpy(float) for name in _DEPENDS_ON}
+
+
+def midplane_tension(omega, density, filling_factor, outer_radius):
+    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
+
+    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
+
+    Parameters
+    ----------
+    omega : float
+        Angular velocity [rad s-1].
+    density : float
+        rho [kg m-3] of the solid.
+    filling_factor : float
+        phi [1].
+    outer_radius : float
+        a_out [m].
+    """
+    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2
+
+
+def midplane_bound(grain):
+    """Angular velocity at which the mean tension at the mid-plane equals Tatsuuma's tensile strength [rad s-1].
+
+    The grain counts as a sphere of its own mass and filling factor, so that a_out = a_eff phi^(-1/3); the monomer
+    radius is the mean radius. An estimate.
+
+    Parameters
+    ----------
+    grain : Grain
+
+    Returns
+    -------
+    float
+        omega [rad s-1].
+    """
+    phi = grain.shape.filling_factor
+    strength = tensile_strength_tatsuuma2019(grain.material.surface_energy, float(np.mean(grain.radius)), phi)
+    outer_radius = grain.effective_radius * phi ** (-1.0 / 3.0)
+    return math.sqrt(strength / midplane_tension(1.0, grain.material.density, phi, outer_radius))

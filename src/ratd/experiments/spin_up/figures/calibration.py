@@ -24,9 +24,9 @@ def calibration(table, fit):
     Parameters
     ----------
     table : pandas.DataFrame
-        From `ratd.experiments.spin_up.calibration.calibration_table`.
+        From `calibration.calibration_table`.
     fit : xarray.Dataset
-        From `ratd.experiments.spin_up.calibration.calibrate`.
+        From `calibration.calibrate`.
 
     Returns
     -------

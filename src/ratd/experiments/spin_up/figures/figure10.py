@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
 from ratd.base.words import plural
-from ratd.experiments.spin_up.ensemble import sort_cells
+from ratd.experiments.spin_up.cells import sort_cells
 from ratd.experiments.spin_up.printed import PAIR_ERROR
 from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
@@ -34,7 +34,7 @@ def figure10(table):
     Parameters
     ----------
     table : pandas.DataFrame
-        Columns of `ratd.experiments.spin_up.pair.PAIR_COLUMNS`.
+        Columns of `pairs.PAIR_COLUMNS`.
 
     Returns
     -------

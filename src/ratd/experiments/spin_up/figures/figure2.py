@@ -1,7 +1,7 @@
 """Fig. 2: what the grown grains are like."""
 
 from ratd.base.words import plural
-from ratd.experiments.spin_up.ensemble import cell_statistics
+from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     TWO_COLUMNS,
@@ -34,7 +34,7 @@ def figure2(table, drive=None):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+        What `grain_table` returns.
     drive : str, optional
         Named in the title; default: what the table says. The grown grains do not depend on it.
 

@@ -6,7 +6,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ratd.base.units import NM
 from ratd.base.words import plural
-from ratd.experiments.spin_up.beyond import oblate_counts
+from ratd.experiments.spin_up.oblateness import oblate_counts
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     GREY,
@@ -31,7 +31,7 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+        What `grain_table` returns.
     material : str
         Material shown.
     sizes : sequence of float

@@ -6,7 +6,9 @@ from matplotlib.lines import Line2D
 
 from ratd.base.materials import Material, get_material
 from ratd.base.words import plural
-from ratd.experiments.spin_up.ensemble import PAPER_MEAN_RADIUS, TABLE_3, cell_statistics, eq33, radius_of_reading
+from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.eq33 import eq33, radius_of_reading
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
 from ratd.pictures.style import (
     GREY,
@@ -38,10 +40,9 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+        What `grain_table` returns.
     fit : xarray.Dataset, optional
-        What `ratd.experiments.spin_up.ensemble.fit_ensemble` returns; its first reading of <a_mon> is drawn, where
-        there is a fit.
+        What `eq33.fit_ensemble` returns; its first reading of <a_mon> is drawn, where there is a fit.
     drive : str, optional
         Named in the title; default: what the table says.
     materials : optional

@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.materials import Material, get_material
 from ratd.base.units import NM
 from ratd.base.words import plural
-from ratd.experiments.spin_up.ensemble import cell_statistics
+from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.run_files import read_grown, read_table
 from ratd.experiments.spin_up.tensile import SCALINGS, predictions
 from ratd.pictures.style import (
@@ -35,18 +35,18 @@ def figure8(table, material="co-S", kind="BAM2", scaled_at=100e-9, drive=None, m
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.ensemble.grain_table` returns.
+        What `grain_table` returns.
     material, kind : str
         Which grains.
     scaled_at : float
-        See `ratd.experiments.spin_up.tensile.predictions` [m].
+        See `tensile.predictions` [m].
     drive : str, optional
         Named in the title; default: what the table says.
     materials : optional
         Table of materials, handed to `ratd.base.materials.get_material`.
     grown : pandas.DataFrame, optional
-        All grains as grown, also those that were not spun up: see `ratd.experiments.spin_up.tensile.predictions`;
-        default: those of `table`.
+        All grains as grown, also those that were not spun up: see `tensile.predictions`; default: those of
+        `table`.
 
     Returns
     -------

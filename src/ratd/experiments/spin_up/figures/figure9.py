@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from ratd.base.errors import InputError
 from ratd.base.units import NM, PS
 from ratd.base.words import plural
-from ratd.experiments.spin_up.ensemble import cell_statistics, size_key
+from ratd.experiments.spin_up.cells import cell_statistics, size_key
 from ratd.experiments.spin_up.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.pictures.style import (
@@ -46,7 +46,7 @@ def figure9(table):
     Parameters
     ----------
     table : pandas.DataFrame
-        What `ratd.experiments.spin_up.parameters.parameter_table` returns, of one drive.
+        What `parameters.parameter_table` returns, of one drive.
 
     Returns
     -------

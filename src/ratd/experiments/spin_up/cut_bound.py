@@ -3,7 +3,7 @@
 Cut the contact graph anywhere. The part cut off, of mass M and with its centre of mass at a distance r from the axis
 of rotation, needs M omega^2 r to stay on its circle, and each contact cut pulls with at most its pull-off force F_C.
 So every cut gives an omega above which the pulls of its contacts are not enough, and the least of them is the cut
-bound. It is not strict: contacts also hold sideways and push, which `ratd.experiments.spin_up.firm_bound` counts.
+bound. It is not strict: contacts also hold sideways and push, which `firm_bound` counts.
 """
 
 import math
@@ -12,18 +12,15 @@ import numpy as np
 
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
-from ratd.base.materials import pull_off_force, reduced_radius
 from ratd.geometry.shape import centre_of_mass, principal_axes
+from ratd.laws.contact_constants import pull_off_force, reduced_radius
 
 __all__ = [
     "contact_strengths",
     "cut_bound",
     "least_bridge_cut",
     "least_plane_cut",
-    "midplane_bound",
-    "midplane_tension",
     "plane_normals",
-    "tensile_strength_tatsuuma2019",
 ]
 
 
@@ -60,7 +57,7 @@ def cut_bound(grain, axis=None, *, directions=500):
     form may be weaker than both families.
 
     It is meant for the aggregate as it stands; contacts made while it deforms can raise it. A contact that is loaded at
-    a slant holds more than F_C along the load: see `ratd.experiments.spin_up.firm_bound.firm_bound`.
+    a slant holds more than F_C along the load: see `firm_bound`.
     """
     if not isinstance(directions, (int, np.integer)) or directions < 1:
         raise InputError(f"directions is {directions!r}; it must be a whole number of at least 1.")
@@ -256,64 +253,3 @@ def least_plane_cut(position, load, contacts, strength, normals):
             if held < least * magnitude:
                 least = held / magnitude
     return least
-
-
-@jit
-def tensile_strength_tatsuuma2019(surface_energy, monomer_radius, filling_factor):
-    """Tensile strength S = 0.951 gamma/a_mon phi^1.8 [Pa].
-
-    Parameters
-    ----------
-    surface_energy : float
-        gamma [J m-2].
-    monomer_radius : float
-        a_mon [m] (r_0 in the source: the radius of the monomers, not that of a contact).
-    filling_factor : float
-        phi [1].
-
-    Notes
-    -----
-    Tatsuuma, Kataoka & Tanaka 2019, ApJ 874, 159: a fit to pulled aggregates of equal monomers.
-    """
-    return 0.951 * surface_energy / monomer_radius * filling_factor**1.8
-
-
-@jit
-def midplane_tension(omega, density, filling_factor, outer_radius):
-    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
-
-    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
-
-    Parameters
-    ----------
-    omega : float
-        Angular velocity [rad s-1].
-    density : float
-        rho [kg m-3] of the solid.
-    filling_factor : float
-        phi [1].
-    outer_radius : float
-        a_out [m].
-    """
-    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2
-
-
-def midplane_bound(grain):
-    """Angular velocity at which the mean tension at the mid-plane equals Tatsuuma's tensile strength [rad s-1].
-
-    The grain counts as a sphere of its own mass and filling factor, so that a_out = a_eff phi^(-1/3); the monomer
-    radius is the mean radius. An estimate.
-
-    Parameters
-    ----------
-    grain : Grain
-
-    Returns
-    -------
-    float
-        omega [rad s-1].
-    """
-    phi = grain.shape.filling_factor
-    strength = tensile_strength_tatsuuma2019(grain.material.surface_energy, float(np.mean(grain.radius)), phi)
-    outer_radius = grain.effective_radius * phi ** (-1.0 / 3.0)
-    return math.sqrt(strength / midplane_tension(1.0, grain.material.density, phi, outer_radius))

@@ -1,8 +1,7 @@
-"""Normal contact of two adhesive elastic spheres (Johnson, Kendall & Roberts 1971) and its viscoelastic damping.
+"""Normal contact of two adhesive elastic spheres (Johnson, Kendall & Roberts 1971) and its damping, as formulae.
 
 Everything is a function of the contact radius r through x = r/r0, r0 being the radius at equilibrium. The state of a
-contact is kept as s = sqrt(x), in which the compression is a polynomial:
-delta/delta_0 = 3 s^4 - 2 s.
+contact is kept as s = sqrt(x), in which the compression is a polynomial: delta/delta_0 = 3 s^4 - 2 s.
 """
 
 import math
@@ -90,7 +89,7 @@ def normal_potential(s, pull_off_force, equilibrium_compression):
 
 
 @jit
-def damping_coefficient(equilibrium_contact_radius, reduced_modulus, poisson_number, viscous_time):
+def viscoelastic_damping(equilibrium_contact_radius, reduced_modulus, viscosity):
     """Viscoelastic damping coefficient [kg s-1] at equilibrium: c = 2 E*/nu^2 r0 T_vis, Eq. 22.
 
     The damping force is c x d(delta)/dt along n_c: it pushes while the spheres approach. Eq. 29 as printed leaves
@@ -102,12 +101,38 @@ def damping_coefficient(equilibrium_contact_radius, reduced_modulus, poisson_num
         r0 [m].
     reduced_modulus : float
         E* [Pa].
-    poisson_number : float
-        nu.
-    viscous_time : float
-        T_vis [s].
+    viscosity : float
+        T_vis/nu^2 [s].
     """
-    return 2.0 * reduced_modulus / poisson_number**2 * equilibrium_contact_radius * viscous_time
+    return 2.0 * reduced_modulus * equilibrium_contact_radius * viscosity
+
+
+@jit
+def contact_time(reduced_mass, reduced_radius, reduced_modulus, surface_energy):
+    """Characteristic time [s] of a contact of Kataoka et al. (2013), Eq. 2, for two spheres of any radii.
+
+    t0 = 0.95 r^(7/6) rho^(1/2)/(E*^(1/3) gamma^(1/6)) for two spheres of radius r; here r = 2 R, and rho such that a
+    sphere of this radius has the mass 2 m_red. The paper prints E for E*.
+
+    Parameters
+    ----------
+    reduced_mass : float
+        m_i m_j/(m_i + m_j) [kg].
+    reduced_radius : float
+        R [m].
+    reduced_modulus : float
+        E* [Pa].
+    surface_energy : float
+        gamma [J m-2].
+    """
+    radius = 2.0 * reduced_radius
+    density = 2.0 * reduced_mass / (4.0 / 3.0 * math.pi * radius**3)
+    return (
+        0.95
+        * radius ** (7.0 / 6.0)
+        * math.sqrt(density)
+        / (reduced_modulus ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
+    )
 
 
 def compression_of(s):

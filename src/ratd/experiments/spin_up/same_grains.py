@@ -10,12 +10,15 @@ from pathlib import Path
 from ratd.aggregates.grain import Grain
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.run_files import run_row
 from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.run_files import run_row
 from ratd.experiments.spin_up.spin import told
+from ratd.geometry.box import open_space
+from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline.partial import Block
 
 __all__ = ["calibrate", "first_step", "of_material", "spin_up_ways", "steps_to", "vary", "way_material"]
@@ -46,7 +49,8 @@ def way_material(way):
 
 def first_step(grain, timestep_factor):
     """Time step [s] with which a spin-up of a grain as grown begins, by Eq. 31."""
-    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
+    parts = jkr(), open_space(), leapfrog(timestep_factor=timestep_factor)
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, *parts)
     return float(state.scalar[DT])
 
 
@@ -59,7 +63,7 @@ def steps_to(grain, reach, angular_acceleration, timestep_factor):
     return int(reach * (angular_acceleration / dt) ** (1.0 / 3.0) / angular_acceleration / dt)
 
 
-def spin_up_ways(job, targets, ways, kind, row):
+def spin_up_ways(job, targets, ways, kind, row, *, law=None):
     """Write a file for each way in which the same grains are spun up; a killed job goes on where it was.
 
     Parameters
@@ -75,6 +79,8 @@ def spin_up_ways(job, targets, ways, kind, row):
         Kind of the files.
     row : callable
         Makes the row of a grain in such a file from the run that `ratd.spin_up` returns.
+    law : part, optional
+        Contact law of all runs, see `ratd.spin_up`.
     """
     of_target = dict(zip(map(str, targets), ways, strict=True))
     blocks = [
@@ -91,7 +97,7 @@ def spin_up_ways(job, targets, ways, kind, row):
                 acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
                 how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
             progress = told(job.progress(f"{block.target.stem} seed {seed}"))
-            done(number, row(spin_up(grain, checkpoint=block.checkpoint(seed), progress=progress, **how)))
+            done(number, row(spin_up(grain, law=law, checkpoint=block.checkpoint(seed), progress=progress, **how)))
 
     job.blocks(blocks, kind, make)
 

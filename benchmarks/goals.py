@@ -1,0 +1,96 @@
+"""What was aimed at, and what was found."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.tables import frame, pair_ratios, projected_range
+
+
+class Goal(NamedTuple):
+    """What was aimed at and what was found.
+
+    Attributes
+    ----------
+    what, unit : str
+    value, limit : float
+    greatest : bool
+        Whether the limit is the greatest value that meets the goal, else the least.
+    low, high : float, optional
+        Where a projected value may lie; None for a measured one.
+    """
+
+    what: str
+    unit: str
+    value: float
+    limit: float
+    greatest: bool
+    low: float | None = None
+    high: float | None = None
+
+    def off(self, value):
+        """By what factor a value misses the goal; 1 and less where it meets it."""
+        return value / self.limit if self.greatest else self.limit / value
+
+    @property
+    def verdict(self):
+        """Whether the goal is met."""
+        nearest, farthest = sorted(self.off(end) for end in (self.low or self.value, self.high or self.value))
+        if farthest <= 1.0:
+            return "met"
+        if nearest <= 1.0:
+            return "left open"
+        if self.low is None:
+            return f"missed by a factor of {nearest:.2f}"
+        return f"missed by a factor of {nearest:.2f} to {farthest:.2f}"
+
+    @property
+    def found(self):
+        """The value, with its range where it is projected."""
+        text = f"{self.value:.3g}"
+        return text if self.low is None else f"projected {text} ({self.low:.3g}–{self.high:.3g})"
+
+
+def goals(out):
+    """What was aimed at and what was measured.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+        Folder of the results.
+
+    Returns
+    -------
+    list of Goal
+        What was not measured is left out.
+    """
+    data, small, runs = frame(out, "kernel"), frame(out, "small"), frame(out, "cost_runs")
+    paper, growth, overhead = frame(out, "cost_paper"), frame(out, "scaling"), frame(out, "pipeline")
+    found = []
+    for (name, motion), case in [] if data is None else data.groupby(["aggregate", "motion"], sort=False):
+        own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
+        found.append(Goal(f"kernel, {name} {motion}", "ns per contact and step", own, 17.0, True))
+        ratio = pair_ratios(case)
+        if len(ratio):
+            found.append(Goal(f"LAMMPS over ratd, {name} {motion}", "times", float(np.median(ratio)), 10.0, False))
+    if small is not None:
+        slowest = small.groupby(["aggregate", "motion"])["us_per_step"].median().max()
+        found.append(Goal(f"a step of {small['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True))
+    if runs is not None:
+        largest = runs[runs["size_nm"] == runs["size_nm"].max()]
+        name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
+        found.append(Goal(name, "s", largest["growth_seconds"].max(), 0.5, True))
+    for row in [] if paper is None else paper.itertuples():
+        law = f"drive {row.drive}, {row.pace}, f = {row.timestep_factor:g}"
+        found.append(
+            Goal(f"{row.grains} grains, {law}", "core-hours", row.core_hours, 48.0, True, *projected_range(row))
+        )
+    if overhead is not None:
+        share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
+        largest = overhead["size_nm"].max()
+        found.append(Goal(f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True))
+    if growth is not None:
+        paper_sized = growth[growth["monomers"] <= 3000]
+        peak = paper_sized["peak_bytes"].max() / 1e6
+        found.append(Goal("memory of a job, up to 3000 monomers", "MB", peak, 400.0, True))
+    return found

@@ -1,0 +1,260 @@
+"""Any set of spheres, moved by any law in open space or in a box; energies, momenta and pieces against time."""
+
+import time as clock
+
+import numpy as np
+import xarray as xr
+
+from ratd.base.errors import InputError
+from ratd.base.materials import get_material
+from ratd.drives.free import rest
+from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
+from ratd.engine import checkpoint as checkpoints
+from ratd.engine.layout import CONTACTS, DT, RADIUS, STEPS, TIME, VX, WX, X
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import has_images, monomer_rows, new_state
+from ratd.engine.step import run, until
+from ratd.geometry.box import open_space, touching_pairs
+from ratd.laws.jkr_with_springs import jkr
+from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
+from ratd.observables.pieces import heaviest_pieces, pieces
+from ratd.observables.pressure import COMPONENTS
+
+__all__ = ["evolve"]
+
+CHECKPOINT_INTERVAL = 60.0
+PROGRESS_INTERVAL = 2.0
+"""Wall time [s] between two checkpoints, and two calls of `progress`."""
+
+# name -> dimensions after `record`, units, meaning
+RECORDS = {
+    "time": ((), "s", "time"),
+    "kinetic_translation": ((), "J", "kinetic energy of the centres"),
+    "kinetic_spin": ((), "J", "kinetic energy of the spins"),
+    "stored": (("storage",), "J", "potential energy of the contacts"),
+    "dissipated": (("way",), "J", "energy dissipated so far"),
+    "box_work": ((), "J", "work of the box so far, -int P dV"),
+    "residual": ((), "J", "kinetic + stored + dissipated - work of the box, less the same at the start"),
+    "momentum": (("axis",), "kg m s-1", "momentum"),
+    "angular_momentum": (("axis",), "kg m2 s-1", "angular momentum about the origin"),
+    "n_contacts": ((), "1", "number of contacts"),
+    "n_pieces": ((), "1", "number of pieces, single monomers included"),
+    "piece_mass": (("rank",), "kg", "masses of the two heaviest pieces"),
+    "box_length": (("axis",), "m", "edges of the periodic box, 0 in open space"),
+    "pressure_tensor": (("component",), "Pa", "pressure of the periodic box, mean since the last record"),
+}  # fmt: skip
+SIZES = {"storage": 4, "way": 6, "axis": 3, "rank": 2, "component": 6}
+
+
+def evolve(
+    position,
+    radius,
+    velocity=None,
+    spin=None,
+    material="q-S",
+    *,
+    law=None,
+    box=None,
+    duration,
+    timestep=None,
+    timestep_factor=0.125,
+    damping="implicit",
+    drag=0.0,
+    contacts=None,
+    records=100,
+    balance=0.05,
+    checkpoint=None,
+    progress=None,
+):
+    """Move spheres by the forces of their contacts.
+
+    Parameters
+    ----------
+    position : (n, 3) array_like
+        Centres [m].
+    radius : (n,) array_like
+        Radii [m].
+    velocity, spin : (n, 3) array_like, optional
+        Velocities [m/s] and spins [rad/s] at the start, 0 when not given. In a periodic box velocities are peculiar:
+        against the box that shrinks or grows.
+    material : str or ratd.Material, or a list of them
+        One for all, or one for each sphere.
+    law : part, optional
+        `ratd.laws.jkr` (the default) or `ratd.laws.dmt` with their options, or a law of your own.
+    box : part, optional
+        `ratd.geometry.box.open_space` (the default) or `periodic`.
+    duration : float
+        How long [s].
+    timestep : float, optional
+        A fixed step [s].
+    timestep_factor : float
+        The step over the shortest time of any contact, when `timestep` is not given.
+    damping : {"implicit", "explicit"}
+        How the normal damping is integrated (`ratd.engine.leapfrog`).
+    drag : float
+        Rate [1/s] at which velocities and spins decay, to bring an aggregate to rest in open space.
+    contacts : (k, 2) array_like, optional
+        Pairs in contact at the start, which then hold the force that belongs to their overlap; all that overlap when
+        not given.
+    records : int
+        Number of records after the start, evenly spaced in time.
+    balance : float or None
+        The run ends with an error when the balance of energy is off by more than this part of the greatest of the
+        kinetic energy at the start, what was dissipated, and the work of the box. None for no check. With a drag there
+        is none.
+    checkpoint : path-like, optional
+        Where to keep what is needed to go on after a kill, with the same bits.
+    progress : callable, optional
+        Called every few seconds as ``progress(part_done, seconds_to_go, dataset_row)``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``record`` the time, energies, momenta, pieces (see `RECORDS`); along ``monomer``, in the order given, the
+        last positions (unwrapped), velocities, spins and pieces.
+
+    Raises
+    ------
+    InputError
+        If an argument is not usable.
+    RuntimeError
+        If the integration fails, or leaves the balance of energy.
+    """
+    position, radius, velocity, spin = _arrays(position, radius, velocity, spin)
+    materials, kind = _materials(material, len(radius))
+    law = jkr() if law is None else law
+    box = open_space() if box is None else box
+    in_box = has_images(box)
+    if in_box and drag:
+        raise InputError("drag is for open space; in a periodic box leave it out.")
+    for name, value in (("duration", duration), ("records", records)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{name} is {value!r}; it must be a number above 0.")
+    drive = squeezing() if in_box else rest(drag)
+    integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
+
+    settings = (materials, law, box, drive, integrator, float(duration), int(records))
+    inputs = (position, radius, velocity, spin, kind, contacts)
+    given = [array is not None for array in inputs]
+    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
+    loaded = checkpoints.load(checkpoint, key)
+    if loaded is not None:
+        state, rows = loaded[0], list(loaded[1]["rows"])
+    else:
+        if contacts is None:
+            contacts = touching_pairs(position, radius, box)
+        how = {"velocity": velocity, "spin": spin, "kind": kind}
+        state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
+        rows = [_row(state, law, box, None)]
+    start = saved = told = clock.monotonic()
+    begun = len(rows)
+    while len(rows) <= records:
+        state, _ = run(state, law, drive, box, integrator, until(time=duration * len(rows) / records))
+        rows.append(_row(state, law, box, rows[0]))
+        if balance is not None and not drag:
+            _check_balance(rows, balance)
+        now = clock.monotonic()
+        if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
+            checkpoints.save(checkpoint, key, state, rows=rows)
+            saved = now
+        if progress is not None and now - told > PROGRESS_INTERVAL:
+            to_go = (now - start) * (records + 1 - len(rows)) / (len(rows) - begun)
+            progress((len(rows) - 1) / records, to_go, rows[-1])
+            told = now
+    return _dataset(state, rows, law, box)
+
+
+def _arrays(position, radius, velocity, spin):
+    """All as float64 arrays, checked."""
+    try:
+        radius = np.array(radius, dtype=np.float64)
+        vectors = [
+            None if array is None else np.array(array, dtype=np.float64, order="C")
+            for array in (position, velocity, spin)
+        ]
+    except (TypeError, ValueError):
+        raise InputError("position, radius, velocity and spin must be arrays of numbers.") from None
+    if radius.ndim != 1 or len(radius) == 0 or not (np.isfinite(radius) & (radius > 0.0)).all():
+        raise InputError(f"radius has the shape {radius.shape}; it must be (n,) numbers above 0, in m, n at least 1.")
+    for name, array in zip(("position", "velocity", "spin"), vectors, strict=True):
+        if array is not None and (array.shape != (len(radius), 3) or not np.isfinite(array).all()):
+            raise InputError(f"{name} has the shape {array.shape}; it must be ({len(radius)}, 3) finite numbers.")
+    if vectors[0] is None:
+        raise InputError("position is None; it must be (n, 3) finite numbers in m.")
+    return vectors[0], radius, vectors[1], vectors[2]
+
+
+def _materials(material, n):
+    """List of the materials, and the number of each sphere's, (n,)."""
+    if not isinstance(material, list | tuple):
+        return [get_material(material)], np.zeros(n, dtype=np.int64)
+    if len(material) != n:
+        raise InputError(
+            f"material is a list of {len(material)}; it must be one for all, or one for each of {n} spheres."
+        )
+    each = [get_material(one) for one in material]
+    materials = list(dict.fromkeys(each))
+    return materials, np.array([materials.index(one) for one in each], dtype=np.int64)
+
+
+def _row(state, law, box, first):
+    """One record, in the order of `RECORDS`; starts a new mean of the pressure."""
+    now = in_step(state, law, box)
+    moving, spinning = kinetic(now, 0.0, False)
+    held = stored(now, law, False)
+    gone = dissipated(now, law)
+    in_box = has_images(box)
+    work = state.drive[WORK] if in_box else 0.0
+    total = moving + spinning + held.sum() + gone.sum() - work
+    residual = 0.0 if first is None else total - first[-1]
+    row = [state.scalar[TIME], moving, spinning, *held, *gone, work, residual, *momenta(now).ravel()]
+    row += [state.counter[CONTACTS], len(pieces(state)[0]), *heaviest_pieces(state), *box.edges(state.scalar)]
+    row += list(mean_pressure_tensor(state, box)) if in_box else [0.0] * 6
+    return [*map(float, row), float(total)]
+
+
+def _check_balance(rows, share):
+    first, last = rows[0], rows[-1]
+    scale = max(first[1] + first[2], sum(last[7:13]), abs(last[13]))
+    # what rounding leaves of energies that cancel
+    floor = 1e-9 * sum(abs(value) for value in last[3:7])
+    if not abs(last[14]) <= max(share * scale, floor):
+        raise RuntimeError(
+            f"at {last[0]:.3g} s the balance of energy is off by {last[14]:.3g} J, {abs(last[14]) / scale:.1%} of what "
+            f"moved; at most {share:.1%} is allowed: take a smaller time step"
+        )
+
+
+def _dataset(state, rows, law, box):
+    table = np.array(rows)
+    variables = {}
+    column = 0
+    for name, (dims, units, meaning) in RECORDS.items():
+        width = int(np.prod([SIZES[dim] for dim in dims]))
+        values = table[:, column : column + width]
+        column += width
+        values = values.reshape(len(table), *(SIZES[dim] for dim in dims))
+        if name.startswith("n_"):
+            values = values.astype("i8")
+        variables[name] = (("record", *dims), values, {"units": units, "long_name": meaning})
+    back = np.argsort(state.identity)
+    rows = monomer_rows(in_step(state, law, box))[back]
+    for name, at, units in (("position", X, "m"), ("velocity", VX, "m s-1"), ("spin", WX, "rad s-1")):
+        about = {"units": units, "long_name": f"{name} at the end"}
+        variables[name] = (("monomer", "axis"), rows[:, at : at + 3].copy(), about)
+    variables["radius"] = ("monomer", rows[:, RADIUS].copy(), {"units": "m", "long_name": "radius"})
+    piece = pieces(state)[2][back]
+    variables["piece"] = ("monomer", piece, {"units": "1", "long_name": "number of the piece at the end"})
+    coordinates = {
+        "storage": list(STORED),
+        "way": list(DISSIPATED),
+        "axis": ["x", "y", "z"],
+        "component": list(COMPONENTS),
+    }
+    about = {
+        "steps": int(state.counter[STEPS]),
+        "timestep": float(state.scalar[DT]),
+        "law": repr(law),
+        "box": repr(box),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=about)

@@ -1,0 +1,70 @@
+"""Whether grains are oblate, at rest and when they are disrupted."""
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.statistics import binomial_interval, mean_of
+from ratd.experiments.spin_up.cells import cell_of
+
+__all__ = ["is_oblate", "oblate_counts", "oblate_share"]
+
+
+def is_oblate(a, b, c):
+    """Whether ellipsoids of semi-axes a < b < c are oblate, b/a > c/b; False where an axis is not known."""
+    return np.square(b) > np.multiply(a, c)
+
+
+def oblate_share(table, when):
+    """Share of oblate grains, all cells counting alike.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    when : {"start", "disr"}
+        At rest, or the largest fragment at omega_disr.
+
+    Returns
+    -------
+    share, error : float
+        See `ratd.base.statistics.mean_of`; NaN where no shape is known.
+    n_oblate, n : int
+        Oblate grains, and those whose shape is known.
+    """
+    known, oblate = _shapes(table, when)
+    return *mean_of(oblate[known], cell_of(table[known])), int(oblate.sum()), int(known.sum())
+
+
+def _shapes(table, when):
+    """Whether the shape of each grain is known, and whether it is oblate."""
+    axes = [table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc"]
+    known = np.isfinite(axes).all(axis=0) & (axes[0] > 0)
+    return known, known & is_oblate(*axes)
+
+
+def oblate_counts(table, by=("type",), confidence=0.95):
+    """Oblate grains (b/a > c/b) at rest and at disruption.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    by : sequence of str
+        Columns that make a row.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The columns of `by`; for `start` and `disr`: NAME_oblate, NAME_known (grains with a shape), NAME_low, NAME_high.
+    """
+    rows = []
+    for keys, part in table.groupby(list(by), sort=False):
+        row = dict(zip(by, keys, strict=True))
+        for when in ("start", "disr"):
+            n, k = (int(np.sum(chosen)) for chosen in _shapes(part, when))
+            low, high = binomial_interval(k, n, confidence)
+            row |= {f"{when}_oblate": k, f"{when}_known": n, f"{when}_low": low, f"{when}_high": high}
+        rows.append(row)
+    return pd.DataFrame(rows)

@@ -1,0 +1,116 @@
+"""omega of disruption over the size of a grain: a power of it, and whether it flattens."""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.materials import get_material
+from ratd.base.statistics import drawn_counts, equal_weights, slope_error, slope_of, weighted_line
+from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of, size_key
+
+__all__ = ["SPLIT", "size_law", "size_law_unit", "slopes"]
+
+SPLIT = 300e-9
+"""Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
+
+
+def size_law_unit(table, materials=None):
+    """sqrt(gamma/(rho a^3)) with a = `SPLIT` [rad s-1], the unit of omega of `size_law`, of each grain of a table."""
+    unit = {}
+    for name in table["material"].unique():
+        material = get_material(name, materials)
+        unit[name] = math.sqrt(material.surface_energy / (material.density * SPLIT**3))
+    return table["material"].map(unit).to_numpy(float)
+
+
+def size_law(table, mark="omega_disr", materials=None, seed=0):
+    """omega of each type as a power of size, for whoever has no grain at hand.
+
+    omega = C sqrt(gamma/(rho a^3)) (a_eff/a)^-p with a = `SPLIT`, by least squares of ln omega; all cells count alike.
+    As in Eq. 33 of Reissl et al. (2024) the material only sets the unit; the contacts and the filling factor, which
+    that has as well, go with size and type.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        omega [rad s-1].
+    materials : optional
+        Table of materials, handed to `ratd.base.materials.get_material`.
+    seed : int
+        Of the bootstrap over grains.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type of at least two sizes: C, p with `_error`; scatter, the root mean square of the residuals of
+        ln omega; n_grains.
+    """
+    table = table[table[mark].astype(float) > 0]
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    for kind, part in table.groupby("type", sort=False):
+        if size_key(part["a_eff"]).nunique() < 2:
+            continue
+        x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
+        y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
+        weights = equal_weights(cell_of(part))
+        slope, level = weighted_line(x, y, weights)
+        drawn_slopes, levels = weighted_line(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
+        rows.append(
+            {
+                "type": kind,
+                "C": float(np.exp(level)),
+                "C_error": float(np.std(np.exp(levels), ddof=1)),
+                "p": float(-slope),
+                "p_error": float(np.std(drawn_slopes, ddof=1)),
+                "scatter": float(np.sqrt(np.average((y - level - slope * x) ** 2, weights=weights))),
+                "n_grains": len(part),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def slopes(table, mark="omega_disr", split=SPLIT):
+    """d ln omega/d ln a_eff below and above a size, and their difference: whether omega flattens.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        omega [rad s-1].
+    split : float
+        Size [m]; grains of this size count on both sides.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type: below, above, change (above - below) with `_error` (`ratd.base.statistics.slope_error`, NaN where
+        a side has too few grains for one); sizes_below, sizes_above, n_grains. Materials are taken together, each with
+        a level of its own, and all cells of a side count alike. NaN where a side has fewer than two sizes.
+    """
+    table = table[table[mark].astype(float) > 0]
+    rows = []
+    for kind, part in table.groupby("type", sort=False):
+        size = size_key(part["a_eff"]).to_numpy()
+        edge = size_key(pd.Series([split])).iloc[0]
+        cell, material = cell_of(part), pd.factorize(part["material"])[0]
+        x, y = np.log(part["a_eff"].to_numpy(float)), np.log(part[mark].to_numpy(float))
+        row = {"type": kind, "n_grains": len(part)}
+        influence = {}
+        for side, chosen in {"below": size <= edge, "above": size >= edge}.items():
+            influence[side] = np.zeros(len(part))
+            row[f"sizes_{side}"] = len(np.unique(size[chosen]))
+            row[side], influence[side][chosen] = slope_of(
+                x[chosen], y[chosen], material[chosen], equal_weights(cell[chosen])
+            )
+        row["change"] = row["above"] - row["below"]
+        influence["change"] = influence["above"] - influence["below"]
+        row |= {f"{name}_error": slope_error(values) for name, values in influence.items()}
+        if not np.isfinite([row["below_error"], row["above_error"]]).all():
+            row["change_error"] = np.nan  # that of one side alone is not that of the difference
+        rows.append(row)
+    return pd.DataFrame(rows)

@@ -1,0 +1,69 @@
+"""The fragments of a state, and the shape of the largest."""
+
+import numpy as np
+
+from ratd.base.jit import jit
+from ratd.engine.fragments import contact_pairs
+from ratd.engine.layout import LARGEST_MONOMERS, MASS, MONOMERS, RADIUS, ROW, X, Y, Z
+from ratd.geometry.neighbours import connected_components
+from ratd.geometry.shape import shape_of
+
+_ROW = np.uint64(ROW)
+
+
+@jit
+def pieces(state):
+    """Masses [kg] and numbers of monomers of all pieces, and the piece of each monomer.
+
+    Returns
+    -------
+    mass : (f,) float64 array
+    members : (f,) int64 array
+    label : (n,) int64 array
+        0, 1, ... in the order of the first monomer of each piece.
+    """
+    n = state.counter[MONOMERS]
+    label = connected_components(n, contact_pairs(state))
+    number = 0
+    for k in range(n):
+        number = max(number, label[k] + 1)
+    mass = np.zeros(number)
+    members = np.zeros(number, dtype=np.int64)
+    for k in range(n):
+        mass[label[k]] += state.monomer[np.uint64(k) * _ROW + MASS]
+        members[label[k]] += 1
+    return mass, members, label
+
+
+def heaviest_pieces(state, number=2):
+    """Masses [kg] of the heaviest pieces, (number,), the heaviest first; 0 where there are fewer."""
+    mass = np.sort(pieces(state)[0])[::-1][:number]
+    return np.concatenate([mass, np.zeros(number - len(mass))])
+
+
+@jit
+def largest_fragment(state):
+    """Positions (m, 3) [m], masses (m,) [kg] and radii (m,) [m] of the largest fragment."""
+    members = state.counter[LARGEST_MONOMERS]
+    position = np.empty((members, 3))
+    mass = np.empty(members)
+    radius = np.empty(members)
+    at = 0
+    for k in range(state.counter[MONOMERS]):
+        if state.fragment[k] == 0:
+            r = np.uint64(k) * _ROW
+            position[at, 0] = state.monomer[r + X]
+            position[at, 1] = state.monomer[r + Y]
+            position[at, 2] = state.monomer[r + Z]
+            mass[at] = state.monomer[r + MASS]
+            radius[at] = state.monomer[r + RADIUS]
+            at += 1
+    return position, mass, radius
+
+
+@jit
+def fragment_shape(state, density):
+    """Mass [kg], semi-axes a, b, c [m] and porosity of the largest fragment."""
+    position, mass, radius = largest_fragment(state)
+    a, b, c, porosity = shape_of(position, mass, radius, density)
+    return mass.sum(), a, b, c, porosity
