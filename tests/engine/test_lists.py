@@ -93,8 +93,7 @@ def test_no_contact_is_missed_and_few_searches_are_made(name):
     for goal in (steps // 3, 2 * steps // 3, steps):
         state, _ = run(state, LAW, drive, box, INTEGRATOR, until(steps=goal))
         assert touching(state, box) <= in_contact(state) and len(in_contact(state)) > 10
-    print(name, changes, state.counter, fresh.counter, np.abs(state.image).max(initial=0))
     assert fresh.monomer.tobytes() == state.monomer.tobytes()
     assert changes > 30
-    if name != "1:50":
-        assert 0 < state.counter[SEARCHES] < 0.2 * changes
+    # measured 14 to 18 of 60 changes in the clusters, 200 of 3000 to 4000 in the boxes
+    assert 0 < state.counter[SEARCHES] < (0.1 if len(radius) > 100 else 0.5) * changes
