@@ -86,8 +86,10 @@ def least_bridge_cut(load, contacts, strength):
 
 
 def close_images(position, radius, reach, edges):
-    """Every pair and every image that may be near: (i, j, n_x, n_y, n_z) with |x_i - x_j + n L| small; of a sphere and its
-    own copies those whose first number that is not 0 is positive."""
+    """Every pair and every image that may be near: (i, j, n_x, n_y, n_z) with |x_i - x_j + n L| small.
+
+    Of a sphere and its own copies those whose first number that is not 0 is positive.
+    """
     found = set()
     for i, j in itertools.combinations_with_replacement(range(len(radius)), 2):
         d = position[i] - position[j]

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from systems import rest_distance, tree
 
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free
@@ -12,7 +11,19 @@ from ratd.drives.rotating import ACCELERATION, OMEGA, OMEGA_RAT, TORQUE_WORK, ro
 from ratd.engine.contacts import remove_contact
 from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import (
-    CONTACTS, DT, DT_DRIFT, FRAGMENTS_LOST, INERTIA, LARGEST_CONTACTS, MASS, MONOMERS, SEARCHES, TIME, VX, WX, X,
+    CONTACTS,
+    DT,
+    DT_DRIFT,
+    FRAGMENTS_LOST,
+    INERTIA,
+    LARGEST_CONTACTS,
+    MASS,
+    MONOMERS,
+    SEARCHES,
+    TIME,
+    VX,
+    WX,
+    X,
 )  # fmt: skip
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, copied, monomer_rows, new_state
@@ -22,6 +33,7 @@ from ratd.laws import jkr
 from ratd.laws.contact_fields import NORMAL
 from ratd.laws.jkr_with_springs import RADIUS_0, S
 from ratd.observables.stress import total_stress
+from systems import rest_distance, tree
 
 MATERIAL = MATERIALS["q-S"]
 LAW, BOX, INTEGRATOR = jkr(), open_space(), leapfrog()
@@ -178,7 +190,8 @@ def test_a_grain_that_turns_misses_no_contact():
     drive = rotating("prescribed", omega_1=1.0, angular_acceleration=1e6)._replace(torque=False)
     assert drive.turning()
     state, _ = go(state, drive, time=3.5e-9)
-    pairs = {frozenset(state.identity[[int(state.pair_i[k]), int(state.pair_j[k])]]) for k in range(state.counter[CONTACTS])}
+    sides = np.array([state.pair_i, state.pair_j]).T[: state.counter[CONTACTS]].astype(int)
+    pairs = {frozenset(pair) for pair in state.identity[sides].tolist()}
     assert len(pairs) == 3 and frozenset((0, 3)) in pairs
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from systems import tree, used
 
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free
@@ -16,6 +15,7 @@ from ratd.engine.state import copied, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, periodic
 from ratd.laws import dmt, jkr
+from systems import tree, used
 
 N = 16
 LAWS = {"jkr": jkr(), "dmt-spring": dmt(friction="spring"), "dmt-velocity": dmt(friction="velocity")}

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from systems import tree
 
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free
@@ -14,6 +13,7 @@ from ratd.engine.state import copied, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, periodic
 from ratd.laws import jkr
+from systems import tree
 
 LAW, INTEGRATOR = jkr(damping="none", friction="none"), leapfrog()
 NOTHING = np.zeros((0, 2), dtype=np.int64)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from systems import clusters, tree
 
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
@@ -11,6 +10,7 @@ from ratd.experiments import evolve as module
 from ratd.experiments.evolve import RECORDS, evolve
 from ratd.geometry.box import periodic
 from ratd.laws import dmt, jkr
+from systems import clusters, tree
 
 A = 30e-9
 PAIR = np.array([[0.0, 0, 0], [59.95e-9, 0, 0]])
@@ -90,7 +90,8 @@ def test_records(whole):
     np.testing.assert_allclose(whole.time, np.linspace(0, 1e-8, 9), rtol=0, atol=2 * whole.attrs["timestep"])
     for name in whole.data_vars:
         assert whole[name].attrs["units"] and whole[name].attrs["long_name"]
-    assert whole.n_contacts[0] == 14 and whole.n_contacts[-1] > 14 and whole.n_pieces[0] == 2 and whole.n_pieces[-1] == 1
+    assert whole.n_contacts[0] == 14 and whole.n_contacts[-1] > 14
+    assert whole.n_pieces[0] == 2 and whole.n_pieces[-1] == 1
     mass = 4 / 3 * np.pi * MATERIALS["q-S"].density * (whole.radius.values**3)
     assert whole.piece_mass.values[0] == pytest.approx([mass[:8].sum()] * 2, rel=1e-12)
     assert whole.piece_mass.values[-1] == pytest.approx([mass.sum(), 0.0], rel=1e-12)
@@ -163,8 +164,8 @@ def test_two_free_bodies_keep_their_momenta_and_places():
     end = evolve(position, radius, velocity, material="q-S", duration=3e-8, records=3)
     assert (end.n_pieces == 2).all()
     for name in ("momentum", "angular_momentum"):
-        wanted = end[name].values[0]
-        np.testing.assert_allclose(end[name], np.broadcast_to(wanted, (4, 3)), rtol=0, atol=1e-12 * np.abs(wanted).max())
+        drift = end[name].values - end[name].values[0]
+        assert np.abs(drift).max() < 1e-12 * np.abs(end[name].values[0]).max()
     time = float(end.time[-1])
     for body in (slice(0, 5), slice(5, 10)):
         wanted = position[body].mean(axis=0) + velocity[body].mean(axis=0) * time
@@ -172,11 +173,12 @@ def test_two_free_bodies_keep_their_momenta_and_places():
 
 
 def test_drag_brings_to_rest():
-    motion = np.array([[0.0, 0, 1.0], [0, 0, 1.0]])
-    end = evolve(**GOOD | {"velocity": motion, "spin": 1e7 * motion, "drag": 2e10, "duration": 1e-10, "timestep": 1e-13})
+    """A pair that moves and turns about its line of centres as a whole."""
+    velocity, spin = [[0, 0, 1.0]] * 2, [[1e7, 0, 0]] * 2
+    end = evolve(**GOOD | {"velocity": velocity, "spin": spin, "drag": 2e10, "duration": 1e-10, "timestep": 1e-13})
     time = float(end.time[-1])
     np.testing.assert_allclose(end.velocity.values[:, 2], np.exp(-2e10 * time), rtol=2e-3)
-    np.testing.assert_allclose(end.spin.values[:, 2], 1e7 * np.exp(-2e10 * time), rtol=2e-3)
+    np.testing.assert_allclose(end.spin.values[:, 0], 1e7 * np.exp(-2e10 * time), rtol=2e-3)
 
 
 def test_spheres_that_do_not_touch_have_a_time_step():

@@ -1,10 +1,9 @@
 """Pieces of a state, energies and momenta, against plain sums."""
 
-import naive_geometry as naive
 import numpy as np
 import pytest
-from systems import tree
 
+import naive_geometry as naive
 from ratd.base.materials import MATERIALS
 from ratd.engine.contacts import remove_contact
 from ratd.engine.fragments import label_fragments
@@ -15,6 +14,7 @@ from ratd.geometry.box import open_space
 from ratd.laws import jkr
 from ratd.observables.energy import kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
+from systems import tree
 
 MATERIAL, LAW = MATERIALS["q-S"], jkr()
 
