@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from reference.contact import DMT, ICE, JKR, SILICA, Material
-from reference.system import Cube, run
-from systems import unit
 
 from ratd.base.materials import Material as Own
 from ratd.experiments.evolve import evolve
 from ratd.geometry.box import periodic
 from ratd.laws import dmt, jkr
+from reference.contact import DMT, ICE, JKR, SILICA, Material
+from reference.system import Cube, run
+from systems import unit
 
 T0 = 1.9365e-10  # of ice, 0.1 um
 SOFT = Material(*ICE[:5], 0.5e-12)

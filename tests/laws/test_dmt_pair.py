@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from reference.contact import SILICA, Pair
 
 from ratd.base.materials import MATERIALS
 from ratd.experiments.evolve import evolve
@@ -14,6 +13,7 @@ from ratd.laws.dmt_with_friction import (
     hertz_stiffness,
     vibration_period,
 )
+from reference.contact import SILICA, Pair
 
 MATERIAL = MATERIALS["silica"]
 TABLE = {  # radius [um]: delta_eq [nm], E_break [J], period [ns]
@@ -58,7 +58,6 @@ def test_speed_of_sticking(radius, wanted):
     for _ in range(8):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stick(radius, middle) else (low, middle)
-    print(radius, low, high)
     assert low == pytest.approx(wanted, rel=3e-3)
 
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from reference import contact as reference
-from systems import field, forces, moved, pair_state, set_fields, unit
 
 from ratd.base.materials import Material
 from ratd.engine.contacts import contact_start
@@ -13,6 +11,8 @@ from ratd.laws import dmt, jkr
 from ratd.laws import dmt_with_friction as dmt_fields
 from ratd.laws import jkr_with_springs as jkr_fields
 from ratd.laws.contact_fields import E_ROLL, E_SLIDE, E_TWIST
+from reference import contact as reference
+from systems import field, forces, moved, pair_state, set_fields, unit
 
 BOX = open_space()
 SILICA = Material("silica", *reference.SILICA[:5], 5e-12)

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-
 from numba.core.errors import TypingError
 
 from ratd.base.jit import jit
@@ -17,7 +16,27 @@ from ratd.experiments.evolve import evolve
 from ratd.geometry.box import open_space
 from ratd.laws import jkr
 from ratd.laws.contact_fields import (
-    A_I, A_J, COMMON, DX, DY, DZ, FX, FY, FZ, NCX, NCY, NCZ, NORMAL, STEP, TIX, TIY, TIZ, TJX, TJY, TJZ, law_fields,
+    A_I,
+    A_J,
+    COMMON,
+    DX,
+    DY,
+    DZ,
+    FX,
+    FY,
+    FZ,
+    NCX,
+    NCY,
+    NCZ,
+    NORMAL,
+    STEP,
+    TIX,
+    TIY,
+    TIZ,
+    TJX,
+    TJY,
+    TJZ,
+    law_fields,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
@@ -121,8 +140,6 @@ def test_what_a_law_lacks_is_told():
     """Spring has no radius of the contact area."""
     law = Spring(1.0)
     touching = np.array([[0.0, 0, 0], [1.9e-7, 0, 0]])
-    state = new_state(
-        touching, np.full(2, 1e-7), MATERIALS["ice"], np.array([[0, 1]]), law, open_space(), leapfrog()
-    )
+    state = new_state(touching, np.full(2, 1e-7), MATERIALS["ice"], np.array([[0, 1]]), law, open_space(), leapfrog())
     with pytest.raises(TypingError, match="Spring has no method contact_radius"):
         total_stress(state, law)
