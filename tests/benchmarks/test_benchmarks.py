@@ -143,8 +143,9 @@ def test_agreement_is_that_of_the_grains_that_have_a_mark_in_both(benchmarks):
 
 
 def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
-    from benchmarks import report
     from benchmarks.goals import goals
+
+    from benchmarks import report
 
     assert goals(tmp_path) == []
     (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
