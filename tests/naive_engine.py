@@ -1,4 +1,4 @@
-"""The contact law, slow and obvious: one contact at a time, vectors as arrays, as in docs/model.md."""
+"""The contact law, slow and obvious: one contact at a time, vectors as arrays, as in docs/model/laws.md."""
 
 import math
 
