@@ -13,8 +13,6 @@ from ratd.pipeline import jobs
 from ratd.pipeline.config import check, read_yaml
 from ratd.base.errors import InputError
 from ratd.pipeline.partial import tidy
-from ratd.reproduction.collected import Collected
-from ratd.reproduction.data import FOLDER
 from ratd.validation.plan import Plan
 
 min_version("9.27")
@@ -32,7 +30,6 @@ configfile: "config/config.yaml"
 
 try:
     PLAN = check(config)
-    COLLECTED = Collected(FOLDER, PLAN)
     CHECKS = Plan("config/validation.yaml")
 except InputError as error:
     sys.exit(str(error))
@@ -50,11 +47,11 @@ wildcard_constraints:
     material=PLAN.pattern("materials"),
     type=PLAN.pattern("types"),
     size=PLAN.pattern("sizes"),
-    seeds="|".join([PLAN.pattern("blocks"), *COLLECTED.blocks]),
+    seeds=PLAN.pattern("blocks"),
 
 
 include: "workflow/rules/grains.smk"
-include: f"workflow/rules/spinup{'_cuda' if PLAN.config['engine'] == 'cuda' else ''}.smk"
+include: "workflow/rules/spinup.smk"
 include: "workflow/rules/disruption.smk"
 include: "workflow/rules/ensemble.smk"
 include: "workflow/rules/parameters.smk"
@@ -62,7 +59,6 @@ include: "workflow/rules/calibration.smk"
 include: "workflow/rules/formulae.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/validation.smk"
-include: "workflow/rules/reproduction.smk"
 
 
 rule all:
@@ -93,17 +89,6 @@ rule write_config:
         "Write down the config"
     script:
         "workflow/scripts/write_config.py"
-
-
-# Jobs that run elsewhere, on a cluster or in an environment of their own, look for themselves.
-onstart:
-    if jobs.gpu_needed(workflow):
-        from ratd.cuda.device import require
-
-        try:
-            require()
-        except InputError as error:
-            sys.exit(str(error))
 
 
 # What is finished needs no pieces any more: a forced rerun is to compute it anew.

@@ -1,7 +1,7 @@
 """Order of the test files."""
 
-LONGEST = ("test_pipeline.py", "test_cuda.py", "test_reproduction.py")
-"""Started first, so that no worker is left alone with one of them at the end."""
+LONGEST = ("test_pipeline.py",)
+"""Started first, so that no worker is left alone with it at the end."""
 
 
 def pytest_collection_modifyitems(items):

@@ -65,7 +65,6 @@ def test_quick_is_three_of_each():
         ({"block_size": 10.0}, "block_size is 10.0", "whole number"),
         ({"small_grains": {"up_to_nm": 200, "block_size": 0}}, "small_grains.block_size is 0", "1 or more"),
         ({"block_size": True}, "block_size is True", "whole number"),
-        ({"engine": "gpu"}, "engine is 'gpu'", "cpu or cuda"),
         ({"seeds": {"number": 0}}, "seeds.number is 0", "1 or more"),
         ({"seeds": {"first": -1}}, "seeds.first is -1", "0 or more"),
         ({"seeds": {"fewer": [{"number": -1}]}}, "seeds.fewer[0].number is -1", "0 or more"),

@@ -44,16 +44,6 @@ def test_what_is_installed_is_what_is_pinned():
     assert {name: metadata.version(name) for name in pinned()} == pinned()
 
 
-def test_environment_of_the_gpu_stands_on_the_other_one_and_is_pinned():
-    text = (ROOT / "environment-gpu.txt").read_text()
-    *packages, base = [line for line in text.splitlines() if line and not line.startswith("#")]
-    assert base == "-r environment.txt"
-    assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][A-Za-z0-9.]*", line) for line in packages)
-    own = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd_gpu.yaml").read_text())["dependencies"][-1]["pip"]
-    common = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd.yaml").read_text())["dependencies"][-1]["pip"]
-    assert set(own) - set(common) == set(packages) and set(common) <= set(own)
-
-
 def test_environment_of_conda_has_the_same_versions():
     environment = yaml.safe_load((ROOT / "workflow" / "envs" / "ratd.yaml").read_text())
     *packages, project = environment["dependencies"][-1]["pip"]

@@ -56,7 +56,7 @@ def test_files_exist(page, path):
 
 
 @pytest.mark.parametrize(
-    ("page", "test", "path"), [(p, *m) for p, m in found(r"`(test_\w+)`\s+in\s+`(tests/\w+\.py)`")]
+    ("page", "test", "path"), [(p, *m) for p, m in found(r"`(test_\w+)`\s+in\s+`(tests/[\w/]+\.py)`")]
 )
 def test_tests_exist(page, test, path):
     assert f"def {test}(" in (ROOT / path).read_text(encoding="utf-8")

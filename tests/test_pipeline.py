@@ -200,36 +200,6 @@ def test_damaged_input_ends_its_job_with_a_name_and_touches_nothing_else(copy_of
     assert after == {name: content for name, content in before.items() if name != RUNS}
 
 
-def test_the_document_is_redrawn_from_its_data_alone_with_the_same_bytes(copy_of):
-    done = copy_of.run("redraw")
-    assert done.returncode != 0 and "docs/reproduction/data/config.yaml" in done.stdout
-    done = copy_of.run("reproduction_data")
-    assert done.returncode == 0, done.stdout
-    shutil.rmtree(copy_of.folder / "results")
-    # what is in the data is not spun up again: of two blocks of each of the two cells the second alone is made
-    copy_of.write_config(TINY | {"seeds": {"first": 0, "number": 8}})
-    planned = copy_of.planned("reproduction_data")
-    assert planned["spin_up"] == 2 and planned["grow"] == 4 and "disrupt" not in planned
-    copy_of.write_config(TINY)
-    drawn = []
-    for _ in range(2):
-        done = copy_of.run("redraw", "--forcerun", "redraw_figure", "redraw_argument", "redraw")
-        assert done.returncode == 0, done.stdout
-        paths = [path for path in (copy_of.folder / "docs").rglob("*.*") if path.suffix in (".md", ".png")]
-        drawn.append({path.name: path.read_bytes() for path in paths})
-    assert drawn[0] == drawn[1]
-    assert {"reproduction.md", "bound.png", "fragments.png", "figure1.png", "figure5_prescribed.png"} < set(drawn[0])
-    assert not {"grains", "spinup", "ensemble"} & {path.name for path in (copy_of.folder / "results").iterdir()}
-    text = drawn[0]["reproduction.md"].decode()
-    shown = {f"reproduction/{name}" for name in re.findall(r"\(reproduction/(\w+\.png)\)", text)}
-    pictures = (copy_of.folder / "docs" / "reproduction").glob("*.png")
-    assert shown == {f"reproduction/{path.name}" for path in pictures}
-    # all grown grains count where something is said of them, and nowhere else
-    (copy_of.folder / "docs" / "reproduction" / "data" / "grown.nc").unlink()
-    figures = [f"docs/reproduction/figure{number}_prescribed.png" for number in (6, 7, 8)]
-    assert copy_of.planned(*figures) == {"redraw_figure": 2}
-
-
 def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
     name = "results/tiny/disruption/prescribed/q-S/BA/50nm.nc"
     content = (copy_of.folder / name).read_bytes()

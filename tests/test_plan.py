@@ -1,11 +1,10 @@
 """What the pipeline plans, and what it refuses, before any job."""
 
 import re
-import shutil
 
 import pytest
 
-from tiny_pipeline import ROOT, TINY, Pipeline
+from tiny_pipeline import TINY, Pipeline
 
 
 @pytest.mark.parametrize(
@@ -59,15 +58,3 @@ def test_full_paper_is_planned(tmp_path):
     planned = pipeline.planned()
     # 4 sizes up to 200 nm, 30 seeds a job, and 7 larger ones, 10 seeds a job
     assert planned["grow"] == planned["spin_up"] == 9 * (4 + 7 * 3) and planned["disrupt"] == 99
-
-
-def test_of_the_validation_only_what_its_data_lack_is_computed(tmp_path):
-    pipeline = Pipeline(tmp_path)
-    data = tmp_path / "docs" / "validation" / "data"
-    shutil.copytree(ROOT / "docs" / "validation" / "data", data)
-    before = pipeline.planned("validation_data")
-    assert before["validation_data"] == 1 and set(before) <= {"validation_data", "validation_convergence"}
-    (data / "energy.nc").unlink()
-    assert pipeline.planned("validation_data") == before | {"validation_energy": 9}
-    done = pipeline.run("validation_report")
-    assert done.returncode != 0 and "error: docs/validation/data: lacks the table of energy as" in done.stdout

@@ -138,7 +138,7 @@ def test_plumbing_exists():
     ("script", "contains", "lacks"),
     [
         ("grow", {"ratd.aggregates.growth", "ratd.aggregates.grain", "ratd.geometry.shape", "ratd.base.materials"}, {"ratd.laws", "ratd.experiments.spin_up.run"}),
-        ("spin_up", {"ratd.experiments.spin_up.run", "ratd.laws.jkr", "ratd.engine"}, {"ratd.aggregates.growth", "ratd.experiments.spin_up.figures"}),
+        ("spin_up", {"ratd.experiments.spin_up.run", "ratd.laws.jkr_with_springs", "ratd.engine"}, {"ratd.aggregates.growth", "ratd.experiments.spin_up.figures"}),
         ("disrupt", {"ratd.experiments.spin_up.marks"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.experiments.spin_up.figures"}),
         ("ensemble", {"ratd.experiments.spin_up.cells"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.experiments.spin_up.figures"}),
         ("figure7", {"ratd.experiments.spin_up.figures", "ratd.pictures.style"}, {"ratd.experiments.spin_up.run", "ratd.laws", "ratd.aggregates.growth"}),

@@ -10,12 +10,18 @@ import xarray as xr
 import ratd
 from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
-from ratd.engine.layout import COMPRESSION, DT
-from ratd.engine.state import contact_field
+from ratd.engine.layout import DT, VX
+from ratd.engine.state import contact_field, monomer_rows
+from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
+from ratd.experiments.spin_up import records
 from ratd.experiments.spin_up import run as spinup
-from ratd.experiments.spin_up.run import _edge, relax, spin_up
+from ratd.experiments.spin_up.records import edge_of_record
+from ratd.experiments.spin_up.run import spin_up
+from ratd.geometry.box import open_space
 from ratd.geometry.shape import inertia_tensor
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
+from ratd.laws.jkr_with_springs import COMPRESSION, PULL_OFF, jkr
+from ratd.observables.pieces import largest_fragment
 
 
 def pair(material, a_i, a_j):
@@ -65,8 +71,8 @@ def test_literal_equations_turn_a_pair_by_its_spins_alone(monkeypatch):
     settings = dict(drive="literal", angular_acceleration=1e15, timestep_factor=0.02)
     exact = spin_up(grain, coriolis="exact", **settings)
     assert float(exact.omega[-1]) == pytest.approx(3.5 * bound, rel=0.03)
-    real = spinup.make_drive
-    monkeypatch.setattr(spinup, "make_drive", lambda *a, **k: real(*a, **k)._replace(spin_terms=True))
+    real = spinup.rotating
+    monkeypatch.setattr(spinup, "rotating", lambda *a, **k: real(*a, **k)._replace(spin_terms=True))
     whole = spin_up(grain, coriolis="exact", max_steps=3 * exact.attrs["steps"], **settings)
     assert whole.attrs["end_reason"] == "max_steps reached" and float(whole.omega[-1]) > 9 * bound
 
@@ -101,13 +107,13 @@ def test_run_tells_its_story(run, grain):
 
 
 def test_records_are_evenly_spaced_in_each_octave(run):
-    omega_1, records = run.attrs["cut_bound"], 300
-    edges = np.array([_edge(k, omega_1, records) for k in range(5 * records)])
-    np.testing.assert_allclose(np.diff(edges[: 2 * records + 1]), omega_1 / (2 * records))
-    np.testing.assert_allclose(np.diff(edges[2 * records : 3 * records + 1]), omega_1 / records)
-    np.testing.assert_allclose(np.diff(edges[3 * records : 4 * records + 1]), 2 * omega_1 / records)
-    first = run.omega.values[: 2 * records]
-    np.testing.assert_allclose(first[: len(first) - 1], edges[: len(first) - 1], atol=2e-2 * omega_1 / records + 1e-9)
+    omega_1, number = run.attrs["cut_bound"], 300
+    edges = np.array([edge_of_record(k, omega_1, number) for k in range(5 * number)])
+    np.testing.assert_allclose(np.diff(edges[: 2 * number + 1]), omega_1 / (2 * number))
+    np.testing.assert_allclose(np.diff(edges[2 * number : 3 * number + 1]), omega_1 / number)
+    np.testing.assert_allclose(np.diff(edges[3 * number : 4 * number + 1]), 2 * omega_1 / number)
+    first = run.omega.values[: 2 * number]
+    np.testing.assert_allclose(first[: len(first) - 1], edges[: len(first) - 1], atol=2e-2 * omega_1 / number + 1e-9)
 
 
 def test_energy_put_in_is_stored_or_dissipated(run):
@@ -145,23 +151,23 @@ def test_killed_run_goes_on_with_the_same_bits(run, grain, tmp_path, monkeypatch
     """Cut off after some checkpoints, twice; the third start finishes, and does not begin anew."""
     monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
     path = tmp_path / "grain.checkpoint"
-    real = spinup._advance
+    real = spinup.go_on
     calls = []
 
-    def dying(state, motion, *rest):
+    def dying(*arguments):
         calls.append(1)
         if len(calls) in (150, 300):
             raise KeyboardInterrupt
-        return real(state, motion, *rest)
+        return real(*arguments)
 
-    monkeypatch.setattr(spinup, "_advance", dying)
+    monkeypatch.setattr(spinup, "go_on", dying)
     for _ in range(2):
         with pytest.raises(KeyboardInterrupt):
             spin_up(grain, **HOW, checkpoint=path)
     assert path.exists()
     finished = spin_up(grain, **HOW, checkpoint=path)
     xr.testing.assert_identical(run, finished)
-    assert len(calls) < 1.2 * run.sizes["record"]  # with those of the relaxation
+    assert len(calls) < run.sizes["record"] + 3
     assert not list(tmp_path.glob("*.tmp"))
 
 
@@ -181,9 +187,9 @@ def test_integration_that_fails_says_so(grain, monkeypatch):
     """A velocity that is no number, as a far too long step makes, ends the run instead of running on for ever."""
     real = spinup.relax
 
-    def spoilt(grain, timestep_factor):
-        state = real(grain, timestep_factor=timestep_factor)
-        spinup.monomer_rows(state)[0, 4] = np.nan
+    def spoilt(grain, **options):
+        state = real(grain, **options)
+        monomer_rows(state)[0, VX] = np.nan
         return state
 
     monkeypatch.setattr(spinup, "relax", spoilt)
@@ -192,7 +198,7 @@ def test_integration_that_fails_says_so(grain, monkeypatch):
 
 
 def test_progress_is_told(grain, monkeypatch):
-    monkeypatch.setattr(spinup, "PROGRESS_INTERVAL", 0.0)
+    monkeypatch.setattr(records, "PROGRESS_INTERVAL", 0.0)
     said = []
     spin_up(grain, epsilon=0.3, progress=lambda *words: said.append(words))
     omega, mass, to_go, steps = np.array(said).T
@@ -203,9 +209,9 @@ def test_progress_is_told(grain, monkeypatch):
 
 def test_relaxed_grain_rests_about_its_axis(grain):
     state = relax(grain)
-    assert spinup.residual_force(state) < spinup.RESIDUAL * contact_field(state, spinup.PULL_OFF).min() * 1.01
+    assert residual_force(state, jkr(), open_space()) < RESIDUAL * contact_field(state, PULL_OFF).min() * 1.01
     assert contact_field(state, COMPRESSION).mean() == pytest.approx(1.0, abs=0.05)
-    position, mass, radius = spinup.largest_fragment(state)
+    position, mass, radius = largest_fragment(state)
     tensor = inertia_tensor(position, mass, radius)
     assert tensor[2, 2] >= tensor[0, 0] and tensor[2, 2] >= tensor[1, 1]
     assert np.abs(tensor - np.diag(np.diag(tensor))).max() < 1e-9 * tensor[2, 2]
@@ -215,14 +221,15 @@ def test_relaxed_grain_rests_about_its_axis(grain):
 def test_contact_that_rings_in_time_with_the_rounds_comes_to_rest():
     """Without damping, a contact of this grain is at a turning point after every two rounds of 50 steps, for ever."""
     state = relax(grow("BAM1", 200e-9, replace(MATERIALS["q-S"], viscous_time=0.0), 3))
-    assert spinup.residual_force(state) < spinup.RESIDUAL * contact_field(state, spinup.PULL_OFF).min() * 1.01
+    assert residual_force(state, jkr(), open_space()) < RESIDUAL * contact_field(state, PULL_OFF).min() * 1.01
 
 
 def test_rounds_of_the_relaxation_get_longer():
-    ends = np.cumsum(50 + np.arange(3500) // 1000)
-    found = [spinup.round_of(steps) for steps in range(ends[-1])]
-    assert np.flatnonzero([done == 0 for _, done in found]).tolist() == [0, *ends[:-1]]
-    assert {length for length, _ in found} == {50, 51, 52, 53} and found[-1] == (53, 52)
+    steps, lengths = 0, []
+    while len(lengths) < 3500:
+        lengths.append(round_length(steps))
+        steps += lengths[-1]
+    assert lengths == (50 + np.arange(3500) // 1000).tolist()
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-# What single formulae of the paper change: one job, hence one process, a formula.
+# What single formulae of the paper change: one job a formula.
 FORMULAE = PLAN.formulae
 
 if FORMULAE:

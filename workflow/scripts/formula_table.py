@@ -1,6 +1,6 @@
 """Tabulate grains spun up with single formulae as printed."""
 
-from ratd.experiments.spin_up.formula_table import formula_table
+from ratd.experiments.spin_up.formulae import formula_table
 from ratd.pipeline import io
 from ratd.pipeline.jobs import Job
 

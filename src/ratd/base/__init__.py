@@ -7,6 +7,7 @@ parts       parts of the engine that are chosen by their type: laws, drives, box
 jit         the flags of compiled code, and where it is kept
 fastmath    roots and reciprocals for the hot loop
 rows        eight rows of memory as columns in vector registers, and back, for the hot loop
+vectors     four numbers that are moved and computed as one, for the hot loop
 statistics  medians, means and slopes with their uncertainty
 markdown    words, numbers and tables in texts and titles
 """

@@ -15,7 +15,7 @@ import numpy as np
 from ratd.base.parts import FLAGS, OwnPartsCache
 
 COMPILED = ("base", "laws", "geometry", "engine", "drives", "observables", "aggregates", "experiments")
-"""Layers with compiled code. Of the last three only files that import `jit` count: no compiled code calls the others."""
+"""Layers with compiled code."""
 
 
 def _source_digest():

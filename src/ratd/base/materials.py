@@ -6,14 +6,6 @@ from dataclasses import dataclass, fields
 from ratd.base.errors import InputError
 from ratd.base.units import GPA, MJ_PER_M2, NM, PS
 
-# Only for modules that are being rewritten, which still look for these names here; to be removed when they are merged.
-from ratd.laws.contact_constants import (  # noqa: F401
-    equilibrium_compression,
-    equilibrium_contact_radius,
-    pull_off_force,
-    reduced_radius,
-)
-
 __all__ = [
     "COMPOSITION",
     "CO_S_FRACTIONS",

@@ -129,43 +129,56 @@ def _store_columns(builder, rows, columns, at, stride):
         _store(builder, turned[column], columns, builder.add(at, builder.mul(stride, _index(number))))
 
 
+def _quarter_rows(builder, x, y, z):
+    """Three columns as eight short rows (x, y, z, 0)."""
+    nothing = ir.Constant(_VECTOR, [0.0] * EIGHT)
+    low, high = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
+    rows = [None] * EIGHT
+    for first, picks in enumerate((low, high)):
+        left = _shuffle(builder, x, y, picks)
+        right = _shuffle(builder, z, nothing, picks)
+        # of each two of four numbers: rows 0, 4 and 2, 6, or 1, 5 and 3, 7
+        for second, halves in enumerate(([0, 1, 8, 9, 4, 5, 12, 13], [2, 3, 10, 11, 6, 7, 14, 15])):
+            both = _shuffle(builder, left, right, halves)
+            for third, part in enumerate(([0, 1, 2, 3], [4, 5, 6, 7])):
+                rows[first + 2 * second + 4 * third] = _shuffle(builder, both, both, part)
+    return rows
+
+
 @intrinsic
-def add_columns(typingctx, rows, index, begin, columns, at, at_last, stride, sign):
-    """Add columns to numbers 0, 1, 2 and 4, 5, 6 of eight rows, one row after the other; a row may come twice.
+def add_forces(typingctx, rows, first, second, begin, columns, at, stride):
+    """Add nine columns of eight pairs to rows of eight numbers, one pair after the other; a row may come twice.
+
+    The columns are a force on the first of a pair, and torques on the first and on the second: the force is added to
+    numbers 0, 1, 2 of the row of the first, and subtracted from those of the second; the torques are added to numbers
+    4, 5, 6.
 
     Parameters
     ----------
     rows : (m,) float64 array
-    index : (k,) uint64 array
-        Where each row begins in `rows`, in units of 8 numbers.
+    first, second : (k,) uint64 arrays
+        Where the rows of each pair begin in `rows`, in units of 8 numbers.
     begin : uint64
-        First of the eight entries of `index`.
+        First of the eight pairs.
     columns : (n,) float64 array
-    at, at_last : uint64
-        Where the columns for numbers 0, 1, 2 and those for 4, 5, 6 begin.
+    at : uint64
+        Where the columns begin.
     stride : uint64
         From one column to the next.
-    sign : float64
-        Factor of the columns for numbers 0, 1, 2.
     """
-    _check("add_columns", (rows, index, columns), (begin, at, at_last, stride))
-    signature = types.void(rows, index, begin, columns, at, at_last, stride, sign)
+    _check("add_forces", (rows, first, second, columns), (begin, at, stride))
+    signature = types.void(rows, first, second, begin, columns, at, stride)
 
     def generate(context, builder, signature, arguments):
-        rows, index, begin, columns, at, at_last, stride, sign = _data(context, builder, signature, arguments)
-        nothing = ir.Constant(_VECTOR, [0.0] * EIGHT)
-        factor = _shuffle(
-            builder, builder.insert_element(nothing, sign, ir.Constant(ir.IntType(32), 0)), nothing, [0] * EIGHT
-        )
-        wanted = [nothing] * EIGHT
-        for number in range(3):
-            step = builder.mul(stride, _index(number))
-            wanted[number] = builder.fmul(_load(builder, columns, builder.add(at, step)), factor)
-            wanted[number + 4] = _load(builder, columns, builder.add(at_last, step))
-        for lane, row in enumerate(_transposed(builder, wanted)):
-            entry = builder.load(builder.gep(index, [builder.add(begin, _index(lane))]))
-            place = builder.shl(entry, _index(3))
-            _store(builder, builder.fadd(_load(builder, rows, place), row), rows, place)
+        rows, first, second, begin, columns, at, stride = _data(context, builder, signature, arguments)
+        values = [_load(builder, columns, builder.add(at, builder.mul(stride, _index(number)))) for number in range(9)]
+        force, torque_i, torque_j = (_quarter_rows(builder, *values[k : k + 3]) for k in (0, 3, 6))
+        for lane in range(EIGHT):
+            for index, join, torque in ((first, builder.fadd, torque_i), (second, builder.fsub, torque_j)):
+                place = builder.shl(builder.load(builder.gep(index, [builder.add(begin, _index(lane))])), _index(3))
+                half = builder.add(place, _index(4))
+                _store(builder, join(_load(builder, rows, place, _HALF), force[lane]), rows, place)
+                _store(builder, builder.fadd(_load(builder, rows, half, _HALF), torque[lane]), rows, half)
         return context.get_dummy_value()
 
     return signature, generate

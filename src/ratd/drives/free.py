@@ -7,28 +7,9 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.base.parts import part
+from ratd.base.vectors import add4, load4, multiply4, scale4, square4, store4, vector4
 from ratd.engine.layout import (
-    FASTEST,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    INV_INERTIA,
-    INV_MASS,
-    MONOMERS,
-    ROW,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
-    VX,
-    VY,
-    VZ,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
+    FASTEST, FORCE_ROW, FORCE_X, INV_INERTIA, INV_MASS, MONOMERS, ROW, TORQUE_X, VX, WX, X,
 )  # fmt: skip
 
 _ROW = np.uint64(ROW)
@@ -68,34 +49,24 @@ def _move(state, drag, kick, dt):
     """Kick and drift all monomers, and clear the forces; `FASTEST` is the greatest speed, NaN after a failure."""
     monomer, force = state.monomer, state.force
     keep = math.exp(-drag * kick)
+    nothing = vector4(0.0, 0.0, 0.0, 0.0)
     fastest = 0.0
     total = 0.0
+    # lanes x, y, z; the fourth of the positions is the radius, of the spins DRIVEN, and both stay
+    braked = vector4(keep, keep, keep, 1.0)
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
         pull = kick * monomer[r + INV_MASS]
         turn = kick * monomer[r + INV_INERTIA]
-        vx = keep * (monomer[r + VX] + pull * force[q + FORCE_X])
-        vy = keep * (monomer[r + VY] + pull * force[q + FORCE_Y])
-        vz = keep * (monomer[r + VZ] + pull * force[q + FORCE_Z])
-        wx = keep * (monomer[r + WX] + turn * force[q + TORQUE_X])
-        wy = keep * (monomer[r + WY] + turn * force[q + TORQUE_Y])
-        wz = keep * (monomer[r + WZ] + turn * force[q + TORQUE_Z])
-        x = monomer[r + X] + dt * vx
-        y = monomer[r + Y] + dt * vy
-        z = monomer[r + Z] + dt * vz
-        monomer[r + X] = x
-        monomer[r + Y] = y
-        monomer[r + Z] = z
-        monomer[r + VX] = vx
-        monomer[r + VY] = vy
-        monomer[r + VZ] = vz
-        monomer[r + WX] = wx
-        monomer[r + WY] = wy
-        monomer[r + WZ] = wz
-        for number in range(FORCE_ROW):  # the whole row, which is one store
-            force[q + np.uint64(number)] = 0.0
-        square = vx * vx + vy * vy + vz * vz
+        v = multiply4(braked, add4(load4(monomer, r + VX), scale4(pull, load4(force, q + FORCE_X))))
+        w = multiply4(braked, add4(load4(monomer, r + WX), scale4(turn, load4(force, q + TORQUE_X))))
+        store4(monomer, r + X, add4(load4(monomer, r + X), scale4(dt, v)))
+        store4(monomer, r + VX, v)
+        store4(monomer, r + WX, w)
+        store4(force, q + FORCE_X, nothing)
+        store4(force, q + TORQUE_X, nothing)
+        square = square4(v)
         fastest = max(fastest, square)
         total += square
     state.scalar[FASTEST] = math.sqrt(fastest) if total < np.inf else math.nan

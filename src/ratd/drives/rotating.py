@@ -12,44 +12,19 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
+from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
 from ratd.engine.fragments import drop, label_fragments, note_lost
 from ratd.engine.layout import (
-    CLOCK,
-    DRIVEN,
-    FASTEST,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    INERTIA,
-    INV_INERTIA,
-    INV_MASS,
-    MASS,
-    MONOMERS,
-    RADIUS,
-    ROW,
-    STEPS,
-    TIME,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
-    VX,
-    VY,
-    VZ,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
+    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    TIME, TORQUE_X, VX, VY, VZ, WX, X, Y, Z,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
 OMEGA = CLOCK
 """Of `state.drive`: angular velocity of the frame [rad/s]."""
 ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS = range(1, 8)
-"""... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last step
-[rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments."""
+"""... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last
+step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments."""
 
 CENTRE_EVERY = 4096
 """Steps after which the origin is put back to the centre of mass.
@@ -278,61 +253,60 @@ def kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, drive):
     alpha = 0.0
     if drive.torque:
         alpha = domega + unwind / kick
-    square = omega * omega
     angle = 2.0 * omega * kick
     cos_v, sin_v = math.cos(angle), math.sin(angle)
     explicit = drive.explicit_coriolis
     h = 0.5 * kick
-    momentum = 0.0
+    # Lanes x, y, z; the fourth of the positions is the radius, of the spins DRIVEN, and both stay. (y, x) times
+    # (-s, s) is a quarter turn.
+    centrifugal = vector4(h * omega * omega, h * omega * omega, 0.0, 0.0)
+    euler = vector4(h * domega, -h * domega, 0.0, 0.0)
+    driving = vector4(-h * alpha, h * alpha, 0.0, 0.0)
+    coriolis = vector4(angle, -angle, 0.0, 0.0)
+    cos4_v, sin4_v = vector4(cos_v, cos_v, 1.0, 1.0), vector4(sin_v, -sin_v, 0.0, 0.0)
+    cos4_w, sin4_w = vector4(cos_w, cos_w, 1.0, 1.0), vector4(sin_w, -sin_w, 0.0, 0.0)
+    spin_driving = vector4(0.0, 0.0, alpha * kick, 0.0)
+    spin_lag = vector4(0.0, 0.0, spin_euler, 0.0)
+    nothing = vector4(0.0, 0.0, 0.0, 0.0)
+    orbital, spinning, spread = nothing, nothing, nothing
     inertia = 0.0
     fastest = 0.0
     for k in range(n):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
-        x = monomer[r + X]
-        y = monomer[r + Y]
         driven = monomer[r + DRIVEN]
-        inv_mass = monomer[r + INV_MASS]
-        euler = alpha * driven - domega
-        ax = force[q + FORCE_X] * inv_mass + square * x - euler * y
-        ay = force[q + FORCE_Y] * inv_mass + square * y + euler * x
-        vx = monomer[r + VX]
-        vy = monomer[r + VY]
-        vz = monomer[r + VZ] + kick * force[q + FORCE_Z] * inv_mass
+        x = load4(monomer, r + X)
+        v = load4(monomer, r + VX)
+        across = swap4(x)
+        ha = scale4(h * monomer[r + INV_MASS], load4(force, q + FORCE_X))
+        ha = add4(ha, multiply4(centrifugal, x))
+        ha = add4(ha, multiply4(add4(euler, scale4(driven, driving)), across))
+        p = add4(v, ha)
         if explicit:
-            vx, vy = vx + kick * ax + angle * vy, vy + kick * ay - angle * vx
+            v = add4(add4(p, multiply4(coriolis, swap4(v))), ha)
         else:
-            px = vx + h * ax
-            py = vy + h * ay
-            vx = cos_v * px + sin_v * py + h * ax
-            vy = cos_v * py - sin_v * px + h * ay
+            v = add4(add4(multiply4(cos4_v, p), ha), multiply4(sin4_v, swap4(p)))
+        t = scale4(h * monomer[r + INV_INERTIA], load4(force, q + TORQUE_X))
+        p = add4(load4(monomer, r + WX), t)
+        w = add4(add4(multiply4(cos4_w, p), add4(t, spin_lag)), multiply4(sin4_w, swap4(p)))
+        w = add4(w, scale4(driven, spin_driving))
 
-        inv_inertia = kick * monomer[r + INV_INERTIA]
-        hx = 0.5 * inv_inertia * force[q + TORQUE_X]
-        hy = 0.5 * inv_inertia * force[q + TORQUE_Y]
-        ux = monomer[r + WX] + hx
-        uy = monomer[r + WY] + hy
-        wx = cos_w * ux + sin_w * uy + hx
-        wy = cos_w * uy - sin_w * ux + hy
-        wz = monomer[r + WZ] + inv_inertia * force[q + TORQUE_Z] + spin_euler + alpha * kick * driven
-
+        store4(monomer, r + X, add4(x, scale4(dt, v)))
+        store4(monomer, r + VX, v)
+        store4(monomer, r + WX, w)
+        store4(force, q + FORCE_X, nothing)
+        store4(force, q + TORQUE_X, nothing)
         mass = driven * monomer[r + MASS]
         own = driven * monomer[r + INERTIA]
-        monomer[r + VX] = vx
-        monomer[r + VY] = vy
-        monomer[r + VZ] = vz
-        monomer[r + WX] = wx
-        monomer[r + WY] = wy
-        monomer[r + WZ] = wz
-        monomer[r + X] = x + dt * vx
-        monomer[r + Y] = y + dt * vy
-        monomer[r + Z] += dt * vz
-        for number in range(FORCE_ROW):  # the whole row, which is one store
-            force[q + np.uint64(number)] = 0.0
-        momentum += mass * (x * vy - y * vx) + own * wz
-        inertia += mass * (x * x + y * y) + own
-        fastest = max(fastest, vx * vx + vy * vy + vz * vz)
-    return momentum, inertia, math.sqrt(fastest)
+        orbital = add4(orbital, multiply4(scale4(mass, v), across))
+        spread = add4(spread, multiply4(scale4(mass, across), across))
+        spinning = add4(spinning, scale4(own, w))
+        inertia += own
+        fastest = max(fastest, square4(v))
+    backward, forward, _, _ = numbers4(orbital)
+    momentum = forward - backward + numbers4(spinning)[2]
+    across_x, across_y, _, _ = numbers4(spread)
+    return momentum, inertia + across_x + across_y, math.sqrt(fastest)
 
 
 @jit

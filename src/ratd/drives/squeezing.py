@@ -7,40 +7,19 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.base.parts import part
+from ratd.base.vectors import add4, load4, multiply4, next4, numbers4, scale4, square4, store4, vector4
 from ratd.engine.layout import (
-    FASTEST,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    INV_INERTIA,
-    INV_MASS,
-    MASS,
-    MONOMERS,
-    ROW,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
-    VIRIAL,
-    VX,
-    VY,
-    VZ,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
+    FASTEST, FORCE_ROW, FORCE_X, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, TORQUE_X, VIRIAL, VX, WX, X, Y, Z,
 )  # fmt: skip
+from ratd.observables.pressure import volume
 
 WORK = 1
-"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]."""
-KINETIC = 2
-"""... six numbers: sum of m u_a u_b over the monomers in the last step (xx, yy, zz, xy, xz, yz) [J]."""
-SUM_STEPS = 8
+"""Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]; where it is `as_printed` also that of
+the force -m H^2 x."""
+SUM_STEPS = 2
 """... steps since the means were last taken."""
-SUM_TENSOR = 9
-"""... six numbers: sum over these steps of V P_ab [J]."""
+SUM_TENSOR = 3
+"""... six numbers: sum over these steps of V P_ab (xx, yy, zz, xy, xz, yz) [J]."""
 
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
@@ -90,55 +69,51 @@ def _move(state, box, kick, dt):
     hx, hy, hz = box.rates()
     lx, ly, lz = box.edges(scalar)
     ux, uy, uz = math.exp(-0.5 * hx * kick), math.exp(-0.5 * hy * kick), math.exp(-0.5 * hz * kick)
-    gx, gy, gz = math.exp(0.5 * hx * dt), math.exp(0.5 * hy * dt), math.exp(0.5 * hz * dt)
+    # lanes x, y, z; the fourth of the positions is the radius, and stays
+    slow = vector4(ux, uy, uz, 1.0)
+    grow = vector4(math.exp(0.5 * hx * dt), math.exp(0.5 * hy * dt), math.exp(0.5 * hz * dt), 1.0)
     printed = box.as_printed
+    nothing = vector4(0.0, 0.0, 0.0, 0.0)
+    before4, after4, shear4, body4 = nothing, nothing, nothing, nothing
     fastest = 0.0
-    xx, yy, zz, xy, xz, yz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    bx, by, bz = 0.0, 0.0, 0.0
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
-        pull = kick * monomer[r + INV_MASS]
-        turn = kick * monomer[r + INV_INERTIA]
         m = monomer[r + MASS]
-        x, y, z = monomer[r + X], monomer[r + Y], monomer[r + Z]
-        vx, vy, vz = monomer[r + VX], monomer[r + VY], monomer[r + VZ]
-        bx += m * vx * vx
-        by += m * vy * vy
-        bz += m * vz * vz
-        vx = vx * ux + pull * force[q + FORCE_X]
-        vy = vy * uy + pull * force[q + FORCE_Y]
-        vz = vz * uz + pull * force[q + FORCE_Z]
+        x = load4(monomer, r + X)
+        v = load4(monomer, r + VX)
+        before4 = add4(before4, multiply4(scale4(m, v), v))
+        slowed = multiply4(slow, v)
+        v = add4(slowed, scale4(kick * monomer[r + INV_MASS], load4(force, q + FORCE_X)))
         if printed:
-            vx -= kick * hx * hx * (x - lx * math.floor(x / lx + 0.5))
-            vy -= kick * hy * hy * (y - ly * math.floor(y / ly + 0.5))
-            vz -= kick * hz * hz * (z - lz * math.floor(z / lz + 0.5))
-        vx *= ux
-        vy *= uy
-        vz *= uz
-        monomer[r + X] = (x * gx + vx * dt) * gx
-        monomer[r + Y] = (y * gy + vy * dt) * gy
-        monomer[r + Z] = (z * gz + vz * dt) * gz
-        monomer[r + VX] = vx
-        monomer[r + VY] = vy
-        monomer[r + VZ] = vz
-        monomer[r + WX] += turn * force[q + TORQUE_X]
-        monomer[r + WY] += turn * force[q + TORQUE_Y]
-        monomer[r + WZ] += turn * force[q + TORQUE_Z]
-        for number in range(FORCE_ROW):  # the whole row, which is one store
-            force[q + np.uint64(number)] = 0.0
-        fastest = max(fastest, vx * vx + vy * vy + vz * vz)
-        xx += m * vx * vx
-        yy += m * vy * vy
-        zz += m * vz * vz
-        xy += m * vx * vy
-        xz += m * vx * vz
-        yz += m * vy * vz
+            x1, y1, z1 = monomer[r + X], monomer[r + Y], monomer[r + Z]
+            pull_x = -kick * hx * hx * (x1 - lx * math.floor(x1 / lx + 0.5))
+            pull_y = -kick * hy * hy * (y1 - ly * math.floor(y1 / ly + 0.5))
+            pull_z = -kick * hz * hz * (z1 - lz * math.floor(z1 / lz + 0.5))
+            pulled = vector4(pull_x, pull_y, pull_z, 0.0)
+            v = add4(v, pulled)
+            body4 = add4(body4, multiply4(scale4(0.5 * m, pulled), add4(slowed, v)))
+        v = multiply4(slow, v)
+        turn = kick * monomer[r + INV_INERTIA]
+        w = add4(load4(monomer, r + WX), scale4(turn, load4(force, q + TORQUE_X)))
+        store4(monomer, r + X, multiply4(grow, add4(multiply4(grow, x), scale4(dt, v))))
+        store4(monomer, r + VX, v)
+        store4(monomer, r + WX, w)
+        store4(force, q + FORCE_X, nothing)
+        store4(force, q + TORQUE_X, nothing)
+        p = scale4(m, v)
+        after4 = add4(after4, multiply4(p, v))
+        shear4 = add4(shear4, multiply4(p, next4(v)))
+        fastest = max(fastest, square4(v))
+    bx, by, bz, _ = numbers4(before4)
+    xx, yy, zz, _ = numbers4(after4)
+    xy, yz, xz, _ = numbers4(shear4)
     after = (xx, yy, zz)
     before = (bx, by, bz)
     factor = (ux * ux, uy * uy, uz * uz)
     rate = (hx, hy, hz)
-    work = 0.0
+    work_x, work_y, work_z, _ = numbers4(body4)
+    work = work_x + work_y + work_z
     for axis in range(3):
         # Kinetic energy that the factors give, before the kick and after it, and the work on the contacts.
         work += 0.5 * (before[axis] * (factor[axis] - 1.0) + after[axis] * (1.0 - 1.0 / factor[axis]))
@@ -148,8 +123,6 @@ def _move(state, box, kick, dt):
         drive[SUM_TENSOR + axis] += 0.5 * (before[axis] * factor[axis] + after[axis] / factor[axis])
     shear = (xy, xz, yz)
     for axis in range(3):
-        drive[KINETIC + axis] = after[axis]
-        drive[KINETIC + 3 + axis] = shear[axis]
         drive[SUM_TENSOR + 3 + axis] += shear[axis]
     for component in range(6):
         drive[SUM_TENSOR + component] += scalar[VIRIAL + component]
@@ -160,3 +133,14 @@ def _move(state, box, kick, dt):
 def squeezing():
     """Motion in a periodic box, whose rate of change stands with the box (`ratd.geometry.box.periodic`)."""
     return Squeezing(True)
+
+
+def mean_pressure_tensor(state, box):
+    """Mean of V P_ab (`ratd.observables.pressure`) since the last call, over the volume now [Pa], (6,).
+
+    Starts a new mean.
+    """
+    steps = state.drive[SUM_STEPS]
+    mean = state.drive[SUM_TENSOR : SUM_TENSOR + 6] / max(steps, 1.0) / volume(state, box)
+    state.drive[SUM_STEPS : SUM_TENSOR + 6] = 0.0
+    return mean

@@ -25,9 +25,8 @@ def save(path, key, state, **tables):
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     with open(temporary, "wb") as file:
-        np.savez(
-            file, key=key, **{f"table_{name}": np.array(table) for name, table in tables.items()}, **state._asdict()
-        )
+        tables = {f"table_{name}": np.array(table) for name, table in tables.items()}
+        np.savez(file, key=key, **tables, **state._asdict())
         file.flush()
         os.fsync(file.fileno())
     os.replace(temporary, path)

@@ -7,9 +7,9 @@ all contacts of the block, sum forces and torques per monomer.
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.base.rows import add_columns, gather_differences, gather_sides
+from ratd.base.rows import add_forces, gather_differences, gather_sides
 from ratd.engine.layout import CONTACTS, DT_DRIFT, VIRIAL
-from ratd.laws.contact_fields import DX, FX, LANES, TIX, TJX, VECTOR, WIX
+from ratd.laws.contact_fields import DX, FX, LANES, VECTOR, WIX
 
 _LANES = np.uint64(LANES)
 
@@ -26,8 +26,7 @@ def _gather(monomer, pair_i, pair_j, scratch, first, count):
 def _scatter(force, pair_i, pair_j, scratch, first, count):
     for lane in range(0, count, VECTOR):
         q = np.uint64(lane)
-        add_columns(force, pair_i, first + q, scratch, FX + q, TIX + q, _LANES, 1.0)
-        add_columns(force, pair_j, first + q, scratch, FX + q, TJX + q, _LANES, -1.0)
+        add_forces(force, pair_i, pair_j, first + q, scratch, FX + q, _LANES)
 
 
 @jit

@@ -11,7 +11,6 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.engine.contacts import gap, get_image
 from ratd.engine.layout import CONTACTS, MONOMERS, RADIUS, ROW, X, Y, Z
-from ratd.geometry.neighbours import close_images, close_pairs
 
 FAR, NEAR = 0.2, 0.02
 """Reach of the two lists, in mean monomer radii."""
@@ -96,20 +95,6 @@ def reach_left(reach, scale, greatest):
     """What is left of a list's reach when the box has shrunk [m], for spheres of up to the greatest radius."""
     shrunk = min(1.0, min(scale[0], min(scale[1], scale[2])))
     return shrunk * reach - (1.0 - shrunk) * 2.0 * greatest
-
-
-@jit
-def far_pairs(state, box, position, radius, reach):
-    """Pairs with images, (k, 5) int64, whose surfaces are closer than `reach`."""
-    edges = box.edges(state.scalar)
-    if edges[0] > 0.0:
-        return close_images(position, radius, reach, edges)
-    found = close_pairs(position, radius, reach)
-    pairs = np.zeros((found.shape[0], 5), dtype=np.int64)
-    for p in range(found.shape[0]):
-        pairs[p, 0] = found[p, 0]
-        pairs[p, 1] = found[p, 1]
-    return pairs
 
 
 @jit

@@ -7,8 +7,8 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, clear_contacts, update_contact_rates
 from ratd.engine.layout import (
-    COUNTERS, CONTACTS, DRIVEN, DT_DRIFT, DRIVE_SCALARS, FORCE_ROW, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW,
-    SCALARS, VX, WX, X,
+    COUNTERS, CONTACTS, DRIVEN, DT_DRIFT, DRIVE_SCALARS, FORCE_ROW, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS,
+    RADIUS, ROW, SCALARS, VX, WX, X,
 )  # fmt: skip
 from ratd.laws.contact_fields import LANES, VECTOR
 from ratd.laws.material_pair import material_row
@@ -120,9 +120,20 @@ def new_state(position, radius, materials, contacts, law, box, integrator, *, ve
     )
     state.counter[MONOMERS] = n
     state = with_room(state, law, box, len(contacts) + 2 * n)
+    if len(contacts) == 0 and n > 1:
+        _set_first_step(state, law, box, integrator)
     _append_all(state, law, box, _spread(_renumbered(np.asarray(contacts), order)))
     update_contact_rates(state, law, integrator)
     return state
+
+
+def _set_first_step(state, law, box, integrator):
+    """The time step of spheres none of which touch: what a contact of the two smallest would allow."""
+    first, second = np.argsort(monomer_rows(state)[:, RADIUS], kind="stable")[:2]
+    _append_all(state, law, box, np.array([[first, second, 0, 0, 0]]))
+    update_contact_rates(state, law, integrator)
+    clear_contacts(state, law, 0, 1)
+    state.counter[CONTACTS] = 0
 
 
 @jit

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, contact_start, get_image, remove_contact, update_contact_rates
 from ratd.engine.layout import (
@@ -12,7 +13,6 @@ from ratd.engine.layout import (
 from ratd.engine.lists import (
     FAR,
     NEAR,
-    far_pairs,
     farthest_move,
     growth,
     mean_radius,
@@ -23,11 +23,15 @@ from ratd.engine.lists import (
     with_pair,
 )
 from ratd.engine.state import with_room
+from ratd.geometry.box import pairs_within
 from ratd.laws.contact_fields import SCRATCH_SIZE
 
 REACHED, FEW_CONTACTS, STEPS_DONE, FULL, NOT_FINITE = range(5)
 """Why `advance` returned: time or clock reached, few contacts left, number of steps reached, no room for a new contact,
 a velocity that is no finite number."""
+
+
+NEVER = np.iinfo(np.int64).max
 
 
 class Until(NamedTuple):
@@ -51,7 +55,7 @@ class Until(NamedTuple):
     fewest_contacts: int
 
 
-def until(*, steps=np.iinfo(np.int64).max, time=np.inf, clock=np.inf, fewest_contacts=-1):
+def until(*, steps=NEVER, time=np.inf, clock=np.inf, fewest_contacts=-1):
     """`Until` with what is not given left open."""
     return Until(int(steps), float(time), float(clock), int(fewest_contacts))
 
@@ -85,7 +89,7 @@ def advance(state, law, drive, box, integrator, until):
     near_reference = far_reference
     far_edges = box.edges(scalar)
     near_edges = far_edges
-    far = far_pairs(state, box, far_reference, radius, far_reach)
+    far = pairs_within(far_reference, radius, far_reach, far_edges)
     near, n_near = near_pairs(state, box, far, near_reach)
     travel = 0.0
     drive.follow(state, False)
@@ -138,7 +142,7 @@ def advance(state, law, drive, box, integrator, until):
                 if worn:
                     far_reference = near_reference
                     far_edges = near_edges
-                    far = far_pairs(state, box, far_reference, radius, far_reach)
+                    far = pairs_within(far_reference, radius, far_reach, far_edges)
                     counter[SEARCHES] += 1
                 near, n_near = near_pairs(state, box, far, near_reach)
                 travel = 0.0
@@ -161,15 +165,19 @@ def run(state, law, drive, box, integrator, until):
 
     Raises
     ------
+    InputError
+        If neither a contact nor an option says how long a step is.
     RuntimeError
         If a velocity is no finite number.
     """
+    if not state.scalar[DT] > 0.0:
+        raise InputError("timestep is not given; a single sphere needs one, since it has no contact to take it from.")
     while True:
         code = advance(state, law, drive, box, integrator, until)
         if code == NOT_FINITE:
             raise RuntimeError(
-                f"the integration failed at step {state.counter[STEPS]}, time {state.scalar[TIME]:.4g} s: a velocity is "
-                "no finite number; try a smaller time step"
+                f"the integration failed at step {state.counter[STEPS]}, time {state.scalar[TIME]:.4g} s: a velocity "
+                "is no finite number; try a smaller time step"
             )
         if code != FULL:
             return state, code

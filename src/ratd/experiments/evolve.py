@@ -1,4 +1,4 @@
-"""Any set of spheres, moved by any law in open space or in a periodic box; energies, momenta and pieces against time."""
+"""Any set of spheres, moved by any law in open space or in a box; energies, momenta and pieces against time."""
 
 import time as clock
 
@@ -8,18 +8,17 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.drives.free import rest
-from ratd.drives.squeezing import WORK, squeezing
+from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import CONTACTS, DT, RADIUS, STEPS, TIME, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.lists import far_pairs
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import run, until
-from ratd.geometry.box import open_space
-from ratd.laws import jkr
+from ratd.geometry.box import open_space, touching_pairs
+from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
-from ratd.observables.pressure import COMPONENTS, mean_pressure_tensor
+from ratd.observables.pressure import COMPONENTS
 
 __all__ = ["evolve"]
 
@@ -35,7 +34,7 @@ RECORDS = {
     "stored": (("storage",), "J", "potential energy of the contacts"),
     "dissipated": (("way",), "J", "energy dissipated so far"),
     "box_work": ((), "J", "work of the box so far, -int P dV"),
-    "residual": ((), "J", "energy that the balance lacks: kinetic + stored + dissipated - work - all of it at the start"),
+    "residual": ((), "J", "kinetic + stored + dissipated - work of the box, less the same at the start"),
     "momentum": (("axis",), "kg m s-1", "momentum"),
     "angular_momentum": (("axis",), "kg m2 s-1", "angular momentum about the origin"),
     "n_contacts": ((), "1", "number of contacts"),
@@ -100,8 +99,9 @@ def evolve(
     records : int
         Number of records after the start, evenly spaced in time.
     balance : float or None
-        The run ends with an error when the balance of energy is off by more than this part of the greatest of the kinetic
-        energy at the start, what was dissipated, and the work of the box. None for no check. With a drag there is none.
+        The run ends with an error when the balance of energy is off by more than this part of the greatest of the
+        kinetic energy at the start, what was dissipated, and the work of the box. None for no check. With a drag there
+        is none.
     checkpoint : path-like, optional
         Where to keep what is needed to go on after a kill, with the same bits.
     progress : callable, optional
@@ -134,26 +134,17 @@ def evolve(
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
     settings = (materials, law, box, drive, integrator, float(duration), int(records))
-    arrays = [array for array in (position, radius, velocity, spin, kind, contacts) if array is not None]
-    key = checkpoints.fingerprint(arrays, *settings)
+    inputs = (position, radius, velocity, spin, kind, contacts)
+    given = [array is not None for array in inputs]
+    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows = loaded[0], list(loaded[1]["rows"])
     else:
-        parts = (law, box, integrator)
-        state = new_state(
-            position,
-            radius,
-            materials,
-            np.zeros((0, 2), dtype=np.int64),
-            *parts,
-            velocity=velocity,
-            spin=spin,
-            kind=kind,
-        )
         if contacts is None:
-            contacts = far_pairs(state, box, position, radius, 0.0)
-        state = new_state(position, radius, materials, contacts, *parts, velocity=velocity, spin=spin, kind=kind)
+            contacts = touching_pairs(position, radius, box)
+        how = {"velocity": velocity, "spin": spin, "kind": kind}
+        state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
     start = saved = told = clock.monotonic()
     begun = len(rows)

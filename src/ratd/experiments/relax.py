@@ -13,7 +13,7 @@ from ratd.engine.state import come_to_rest, contact_blocks, monomer_rows, new_st
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space
 from ratd.geometry.shape import principal_axes
-from ratd.laws import jkr
+from ratd.laws.jkr_with_springs import jkr
 from ratd.laws.contact_constants import pull_off_force, reduced_radius
 from ratd.laws.contact_fields import A_I, A_J, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX, SCRATCH_SIZE
 from ratd.laws.material_pair import SURFACE_ENERGY

@@ -13,6 +13,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
+from ratd.geometry.neighbours import close_images, close_pairs
 from ratd.laws.contact_fields import (
     DVX,
     DVY,
@@ -32,7 +33,7 @@ from ratd.laws.contact_fields import (
     VZZ,
 )  # fmt: skip
 
-__all__ = ["SCHEMES", "Open", "Periodic", "open_space", "periodic"]
+__all__ = ["SCHEMES", "Open", "Periodic", "open_space", "periodic", "touching_pairs"]
 
 SCHEMES = ("homogeneous", "as_printed")
 
@@ -189,3 +190,30 @@ def periodic(length, rate=0.0, *, scheme="homogeneous"):
             raise InputError(f"The {name} of a periodic box is {value!r}; it must be {allowed}.")
         values += np.broadcast_to(three, 3).tolist()
     return Periodic(*values, as_printed=scheme == "as_printed")
+
+
+@jit
+def touching_pairs(position, radius, box):
+    """Pairs of spheres that overlap, with images, (k, 5) int64 (see `close_images`).
+
+    Parameters
+    ----------
+    position : (n, 3) float64 array
+        Centres [m].
+    radius : (n,) float64 array
+        Radii [m].
+    box : part
+        At its start.
+    """
+    return pairs_within(position, radius, 0.0, box.edges(np.zeros(1)))
+
+
+@jit
+def pairs_within(position, radius, reach, edges):
+    """Pairs with images, (k, 5) int64, whose surfaces are closer than `reach`; `edges` are 0 in open space."""
+    if edges[0] > 0.0:
+        return close_images(position, radius, reach, edges)
+    found = close_pairs(position, radius, reach)
+    pairs = np.zeros((found.shape[0], 5), dtype=np.int64)
+    pairs[:, :2] = found
+    return pairs

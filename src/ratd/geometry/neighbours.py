@@ -44,11 +44,11 @@ def close_pairs(position, radius, reach):
     Notes
     -----
     Spheres are sorted into classes of radii, each a factor of `CLASS_WIDTH` wide, so that a few large ones do not make
-    the cells of all others large. Those of a class are sorted into cubic cells no smaller than the greatest distance at
-    which a pair of them counts; so the partners of a sphere, of its class or a smaller one, lie in the same cell and the
-    26 around it. Only cells that hold a sphere exist. They are visited in the order of their keys, and of every row of
-    cells along z that may hold partners the beginning moves only forwards, so that apart from the sorts everything is
-    linear in n.
+    the cells of all others large. Those of a class are sorted into cubic cells no smaller than the greatest distance
+    at which a pair of them counts; so the partners of a sphere, of its class or a smaller one, lie in the same cell
+    and the 26 around it. Only cells that hold a sphere exist. They are visited in the order of their keys, and of every
+    row of cells along z that may hold partners the beginning moves only forwards, so that apart from the sorts
+    everything is linear in n.
     """
     n = radius.shape[0]
     first = np.empty(4 * n, dtype=np.int64)

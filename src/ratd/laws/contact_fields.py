@@ -1,15 +1,15 @@
 """Where each number of a contact stands.
 
 Contacts are kept in blocks of `LANES`: within a block each field is contiguous, so that the arithmetic runs on whole
-vector registers, and a block (some 14 KiB) stays in the first-level cache while it is gathered, computed and summed.
+vector registers, and a block (some 12 KiB) stays in the first-level cache while it is gathered, computed and summed.
 Field f of the contact whose fields begin at ``at`` is ``contact[at + f]``. The first `COMMON` fields are those of
-every law, the others belong to the law, which takes them from `law_fields`. The offsets are unsigned: for a signed index
-numba emits a test for a negative one, which keeps the loop from being vectorised.
+every law, the others belong to the law, which takes them from `law_fields`. The offsets are unsigned: for a signed
+index numba emits a test for a negative one, which keeps the loop from being vectorised.
 """
 
 import numpy as np
 
-LANES = 56
+LANES = 48
 VECTOR = 8
 """Contacts are padded to a multiple of this with contacts that do nothing."""
 

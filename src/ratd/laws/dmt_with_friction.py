@@ -79,7 +79,7 @@ def adhesion_force(reduced_radius, surface_energy):
 
 @jit
 def hertz_stiffness(reduced_radius, reduced_modulus):
-    """K [N m^-3/2] of the elastic force K delta^(3/2): 4/3 E* sqrt(R), which is 2/3 Y/(1 - nu^2) sqrt(R) of equal spheres."""
+    """K [N m^-3/2] of the force K delta^(3/2): 4/3 E* sqrt(R), which is 2/3 Y/(1 - nu^2) sqrt(R) of equal spheres."""
     return 4.0 / 3.0 * reduced_modulus * math.sqrt(reduced_radius)
 
 

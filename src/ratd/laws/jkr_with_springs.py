@@ -151,7 +151,8 @@ def _push_and_damp(contact, scratch, start, count, dt, constant):
     for lane in range(count):
         q = np.uint64(lane)
         k = start + q
-        s = contact_state(contact[COMPRESSION + k], contact[S + k])
+        # beyond the end of the branch there is no root: Newton's steps would run away
+        s = contact_state(max(contact[COMPRESSION + k], COMPRESSION_END), contact[S + k])
         normal = normal_force(s, contact[PULL_OFF + k])
         contact[S + k] = s
         contact[NORMAL + k] = normal
@@ -168,7 +169,7 @@ def _push_and_damp(contact, scratch, start, count, dt, constant):
 
 @jit(forceinline=True)
 def _turn(contact, scratch, start, count, dt_drift):
-    """Pointers turned by the last move, as unit vectors: cutting them back has changed their lengths a little."""
+    """Pointers turned by the last move. Their length grows by a part of (w dt)^4/8, which `_slip` takes back."""
     h = 0.5 * dt_drift
     for lane in range(count):
         q = np.uint64(lane)
@@ -181,8 +182,6 @@ def _turn(contact, scratch, start, count, dt_drift):
             contact[NJX + k], contact[NJY + k], contact[NJZ + k],
             h * scratch[WJX + q], h * scratch[WJY + q], h * scratch[WJZ + q],
         )  # fmt: skip
-        nix, niy, niz = nearly_unit(nix, niy, niz)
-        njx, njy, njz = nearly_unit(njx, njy, njz)
         contact[NIX + k] = nix
         contact[NIY + k] = niy
         contact[NIZ + k] = niz
@@ -223,7 +222,7 @@ def _displace(contact, scratch, start, count):
 
 @jit(forceinline=True)
 def _slip(contact, scratch, start, count):
-    """Pointers cut back to the limits of sliding and rolling; what is not beyond its limit keeps its bits.
+    """Pointers cut back to the limits of sliding and rolling, and made unit vectors again.
 
     Sliding shortens zeta by what has slipped, and changes neither w.n_c nor n_i + n_j; rolling does not change w.
     """
@@ -251,6 +250,8 @@ def _slip(contact, scratch, start, count):
         contact[E_ROLL + k] += contact[K_ROLL + k] * xi2 * rolled * (1.0 - rolled)
         nix, niy, niz, njx, njy, njz = slide_back(slipped, inv_sum, nix, niy, niz, njx, njy, njz, zx, zy, zz)
         nix, niy, niz, njx, njy, njz = roll_back(rolled, inv_sum, a_i, nix, niy, niz, a_j, njx, njy, njz)
+        nix, niy, niz = nearly_unit(nix, niy, niz)
+        njx, njy, njz = nearly_unit(njx, njy, njz)
         contact[NIX + k] = nix
         contact[NIY + k] = niy
         contact[NIZ + k] = niz
@@ -427,7 +428,6 @@ class JKR(NamedTuple):
 
     def stiffness(self, contact, at):
         # The normal stiffness at equilibrium is 1.2 F_C/delta_0; 2.5 covers contacts pressed to 4 delta_0.
-        r = contact[at + A_I] * contact[at + A_J] * contact[at + INV_SUM]
         s = contact[at + S]
         k_n = contact[at + PULL_OFF] * contact[at + INV_DELTA0] * max(2.5, 2.0 * s * s)
         return k_n, contact[at + K_SLIDE], contact[at + K_ROLL], contact[at + K_TWIST]

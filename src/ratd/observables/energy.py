@@ -101,7 +101,7 @@ def dissipated(state, law):
 
 @jit
 def stored(state, law, largest):
-    """Potential energies [J] of the contacts, (4,), in the order of `STORED`; with `largest` of the largest fragment."""
+    """Potential energies [J] of all contacts, or those of the largest fragment, (4,), in the order of `STORED`."""
     energy = np.zeros(4)
     for k in range(state.counter[CONTACTS]):
         if largest and state.fragment[state.pair_i[k]] != 0:

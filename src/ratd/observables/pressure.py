@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.drives.squeezing import KINETIC, SUM_STEPS, SUM_TENSOR
-from ratd.engine.layout import VIRIAL
+from ratd.engine.layout import MASS, VIRIAL, VX
+from ratd.engine.state import monomer_rows
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 
@@ -23,16 +23,11 @@ def pressure_tensor(state, box):
     (6,) float64 array
         In the order of `COMPONENTS`.
     """
-    kinetic = state.drive[KINETIC : KINETIC + 6]
+    rows = monomer_rows(state)
+    u = rows[:, VX : VX + 3]
+    moving = np.einsum("k,ka,kb->ab", rows[:, MASS], u, u)
+    kinetic = moving[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     return (kinetic + state.scalar[VIRIAL : VIRIAL + 6]) / volume(state, box)
-
-
-def mean_pressure_tensor(state, box):
-    """Mean of V P_ab over the steps since the last call, over the volume now [Pa], (6,); starts a new mean."""
-    steps = state.drive[SUM_STEPS]
-    mean = state.drive[SUM_TENSOR : SUM_TENSOR + 6] / max(steps, 1.0) / volume(state, box)
-    state.drive[SUM_STEPS : SUM_TENSOR + 6] = 0.0
-    return mean
 
 
 def pressure(tensor):

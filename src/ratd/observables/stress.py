@@ -34,7 +34,7 @@ def contact_stress(state, law, k):
 
 @jit
 def total_stress(state, law):
-    """sigma_Sigma [Pa]: sum over the contacts of the largest fragment of |F_N|/(pi r^2), Eq. 32 of Reissl et al. 2024."""
+    """sigma_Sigma [Pa]: sum of |F_N|/(pi r^2) over the contacts of the largest fragment (Eq. 32 of Reissl et al.)."""
     stress = 0.0
     for k in range(state.counter[CONTACTS]):
         if state.fragment[state.pair_i[k]] == 0:

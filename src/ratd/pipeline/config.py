@@ -18,7 +18,7 @@ from ratd.aggregates.growth import MOST_MONOMERS, RadiusDistribution, smallest_a
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS, Material, mix
 from ratd.base.units import GPA, MJ_PER_M2, NM, PS
-from ratd.experiments.spin_up.formula_table import DAMPING, FORMULAE
+from ratd.experiments.spin_up.formulae import DAMPING, FORMULAE
 from ratd.experiments.spin_up.parameters import ways
 
 # 10.0 is no whole number here: it would not do as the length of a list
@@ -757,7 +757,7 @@ class Plan:
         ]
 
     def parameters(self, drive, kind, size):
-        """Settings of the runs of figure 9 of one type and size, one a way (see `ratd.experiments.spin_up.variations.spin_up_ways`)."""
+        """Settings of the runs of figure 9 of one type and size, one a way (see `ratd.experiments.spin_up.same_grains.spin_up_ways`)."""
         own = self.config["figures"]["figure9"]
         first = own["seeds"]["first"]
         paces = {
@@ -811,7 +811,7 @@ class Plan:
         return [] if self.config["figures"]["formulae"] is None else list(FORMULAE)
 
     def formula_runs(self, formula):
-        """Settings of the runs with one formula as printed, one a type and size (see `ratd.experiments.spin_up.variations.spin_up_ways`).
+        """Settings of the runs with one formula as printed, one a type and size (see `ratd.experiments.spin_up.same_grains.spin_up_ways`).
 
         In the order of `formula_cells`.
         """

@@ -21,7 +21,7 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
-from ratd.experiments.spin_up.ensemble import spin_share
+from ratd.geometry.shape import spin_share
 from ratd.pipeline import schema
 
 CONVENTIONS = "CF-1.11"
@@ -461,7 +461,7 @@ def grain_row(grain, cut_bound):
     ----------
     grain : Grain
     cut_bound : float
-        From `ratd.experiments.spin_up.bound.cut_bound` [rad s-1].
+        From `ratd.experiments.spin_up.cut_bound.cut_bound` [rad s-1].
 
     Returns
     -------
@@ -582,7 +582,7 @@ def read_marks(path):
 def read_grain_columns(path):
     """What a file of grains says of each, without its monomers: list of datasets of scalars, with material and type.
 
-    The share of the monomers in the moment of inertia, `ratd.experiments.spin_up.ensemble.spin_share`, is added: it needs their radii.
+    The share of the monomers in the moment of inertia, `ratd.geometry.shape.spin_share`, is added: it needs their radii.
     """
     file = read(path, "grains")
     return [
@@ -594,10 +594,10 @@ def read_grain_columns(path):
 
 
 def read_table(path):
-    """Table of all grains as `ratd.experiments.spin_up.ensemble.grain_table` made it, pandas.DataFrame; see `read` for the errors."""
+    """Table of all grains as `ratd.experiments.spin_up.grain_table.grain_table` made it, pandas.DataFrame; see `read` for the errors."""
     return read(path, "table").to_pandas()
 
 
 def read_fit(path):
-    """Fit as `ratd.experiments.spin_up.ensemble.table3_dataset` made it, xarray.Dataset; see `read` for the errors."""
+    """Fit as `ratd.experiments.spin_up.eq33.table3_dataset` made it, xarray.Dataset; see `read` for the errors."""
     return read(path, "fit")

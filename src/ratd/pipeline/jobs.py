@@ -18,14 +18,12 @@ from ratd.pipeline.provenance import provenance, source_hash
 WRITES = {
     "grow": ("grains",),
     "spin_up": ("spinup",),
-    "spin_up_cuda": ("spinup",),
     "disrupt": ("disruption",),
     "ensemble": ("table", "cells", "fit"),
     "grown": ("table",),
     "composition": ("table1", "table2"),
     "pairs": ("pairs",),
     "firm_bounds": ("firm_bounds",),
-    "reproduction_data": ("fragments", "firm_bounds"),
     "parameters": ("disruption",),
     "parameter_table": ("parameters",),
     "formulae": ("disruption",),
@@ -35,7 +33,7 @@ WRITES = {
 }
 """Kinds of files that the script of a rule writes."""
 
-READS = {"grain_page": ("figures/grain_page.html", "figures/grain_page.js")}
+READS = {"grain_page": ("pictures/grain_page.html", "pictures/grain_page.js")}
 """Files of ratd beside its modules that the script of a rule reads."""
 
 PROGRESS_INTERVAL = 10.0
@@ -60,7 +58,7 @@ def code_hash(scripts, rule):
         part of it.
     """
     layout = [schema.fingerprint(kind) for kind in WRITES.get(rule, ())]
-    texts = [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in READS.get(rule, ())]
+    texts = [(Path(__file__).parents[1] / name).read_text(encoding="utf-8") for name in READS.get(rule, ())]
     return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout + texts)
 
 
@@ -77,23 +75,6 @@ def code_hashes(scripts):
         Name of the rule -> `code_hash`.
     """
     return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
-
-
-def gpu_needed(workflow):
-    """Whether this process needs a GPU for what is to be computed.
-
-    Parameters
-    ----------
-    workflow : snakemake.workflow.Workflow
-        About to start, its jobs known.
-
-    Returns
-    -------
-    bool
-        False for jobs that run on a cluster, or in an environment of their own.
-    """
-    here = workflow.local_exec and not workflow.deployment_settings.deployment_method
-    return here and any("gpu" in job.resources.keys() for job in workflow.dag.needrun_jobs())
 
 
 class Job:

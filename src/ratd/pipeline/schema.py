@@ -13,19 +13,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ratd import (
+from ratd.base.errors import FileError
+from ratd.experiments.spin_up import (
     calibration,
     composition,
-    ensemble,
     firm_bound,
-    formula_table,
+    formulae,
     fragmentation,
+    grain_table,
     marks,
-    pair,
+    pairs,
     parameters,
-    spinup,
+    records,
 )
-from ratd.base.errors import FileError
 
 FORMAT = 1
 """Version of the layout of the files. Raise it when `ratd.pipeline.io` lays out the same variables in another way."""
@@ -194,11 +194,11 @@ _SPINUP = {
     **_row_sizes(_SPINUP_RAGGED),
     **{
         name: Variable(("record",), dtype, units, meaning, nan=name in _SHAPE_NAN)
-        for name, (units, meaning, dtype) in spinup.RECORDS.items()
+        for name, (units, meaning, dtype) in records.RECORDS.items()
     },
     **{
         name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
-        for name, (units, meaning) in spinup.FRAGMENTS.items()
+        for name, (units, meaning) in records.FRAGMENTS.items()
     },
     **_over(("snapshot",), {"snapshot_omega": ("rad s-1", "angular velocity")}),
     **_over(("monomer",), {"monomer_radius": ("m", "radius")}),
@@ -237,11 +237,11 @@ def _column(name, dimension, units, meaning):
     return Variable((dimension,), "f8", units, meaning, nan=True)
 
 
-_TABLE = {name: _column(name, "grain", *about) for name, about in ensemble.COLUMNS.items()}
+_TABLE = {name: _column(name, "grain", *about) for name, about in grain_table.COLUMNS.items()}
 
-_CELLS = {name: _column(name, "cell", *ensemble.COLUMNS[name]) for name in ("material", "type", "a_eff")}
+_CELLS = {name: _column(name, "cell", *grain_table.COLUMNS[name]) for name in ("material", "type", "a_eff")}
 _CELLS["n_grains"] = Variable(("cell",), "i8", "1", "grains in the cell")
-for _name, (_units, _meaning) in ensemble.COLUMNS.items():
+for _name, (_units, _meaning) in grain_table.COLUMNS.items():
     if _name not in (*_TEXT_COLUMNS, "a_eff", "seed"):
         for _statistic in ("mean", "minimum", "maximum"):
             _CELLS[f"{_name}_{_statistic}"] = _column(_name, "cell", _units, f"{_statistic} of: {_meaning}")
@@ -318,8 +318,8 @@ KINDS = {
         "Onset of mass loss with the literal drive, and the calibrated angular acceleration",
         _entries(calibration.CALIBRATION_COLUMNS) | _over((), calibration.FIT_VALUES, nan=True),
     ),
-    "formulae": Kind("Grains spun up with single formulae as printed", _entries(formula_table.FORMULA_COLUMNS)),
-    "pairs": Kind("Pairs of equal monomers that part", _entries(pair.PAIR_COLUMNS)),
+    "formulae": Kind("Grains spun up with single formulae as printed", _entries(formulae.FORMULA_COLUMNS)),
+    "pairs": Kind("Pairs of equal monomers that part", _entries(pairs.PAIR_COLUMNS)),
     "firm_bounds": Kind(
         "Bounds from cuts whose contacts hold sideways and push", _entries(firm_bound.FIRM_BOUND_COLUMNS)
     ),

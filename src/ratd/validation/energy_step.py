@@ -1,34 +1,34 @@
 """Energy of a free grain that vibrates and turns without dissipation: how well the scheme keeps it, against the step.
 
-Damping and the limits of sliding and rolling are switched off; twisting stays below its limit, which the column
+There is no damping, and sliding and rolling have no limits; twisting stays below its limit, which the column
 ``dissipated`` proves.
 """
 
-import numpy as np
+from dataclasses import replace
 
 from ratd.aggregates.growth import grow
-from ratd.engine.layout import CONTACTS, STEPS
-from ratd.engine.measure import dissipated
-from ratd.engine.state import monomer_rows
-from ratd.validation.free_grain import energy_after_step, go_on, kinetic_energy, make_elastic, shaken, turn
+from ratd.experiments.evolve import evolve
+from ratd.experiments.spin_up.same_grains import first_step
+from ratd.laws.jkr_with_springs import jkr
+from ratd.validation.free_grain import random_motion
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 COLUMNS = {
     **GRAIN_COLUMNS,
     "timestep_factor": ("1", "f in the time step f min(t_dis, t_vel)"),
-    "step": ("1", "steps made before the energies of the sample"),
-    "error": ("1", "energy less that of the first step, over the kinetic energy at the start, mean of the sample"),
-    "greatest": ("1", "greatest magnitude of the same in the sample"),
+    "time": ("s", "time since the start"),
+    "error": ("1", "energy less that at the start, over the kinetic energy at the start"),
     "dissipated": ("1", "energy dissipated so far over the kinetic energy at the start"),
     "contacts_made": ("1", "contacts more than at the start"),
 }
 KIND = table_kind("energy_step", "Energy of elastic free grains against the step", COLUMNS)
-SAMPLE = 10
-"""Steps of a sample that follow each other."""
+ELASTIC = jkr(damping="none", sliding_limit=1e12)
+NO_ROLLING_LIMIT = 1.0
+"""Critical rolling displacement that no contact gets to [m]."""
 
 
-def moving(grain, speed, timestep_factor):
-    """State of an elastic grain that vibrates and turns.
+def course(grain, speed, timestep_factor, duration, samples):
+    """Energy of one free elastic grain, as rows of `COLUMNS`.
 
     Parameters
     ----------
@@ -38,58 +38,41 @@ def moving(grain, speed, timestep_factor):
         angular velocity of the whole, about z, times the effective radius [m/s].
     timestep_factor : float
         f of Eq. 31.
-
-    Returns
-    -------
-    State
-    """
-    state = shaken(grain, speed, speed / grain.radius.max(), grain.seed, timestep_factor=timestep_factor)
-    turn(monomer_rows(state), np.array([0.0, 0.0, speed / grain.effective_radius]))
-    make_elastic(state)
-    return state
-
-
-def course(grain, speed, timestep_factor, steps, samples):
-    """Energy of one free elastic grain, as rows of `COLUMNS`.
-
-    Parameters
-    ----------
-    grain : ratd.Grain
-    speed, timestep_factor : float
-        See `moving`.
-    steps, samples : int
-        Length of the run, and number of samples in it, each of `SAMPLE` steps.
+    duration : float
+        Length of the run [s].
+    samples : int
+        How often the energy is taken.
 
     Returns
     -------
     list of dict
     """
-    state = moving(grain, speed, timestep_factor)
-    start, contacts = kinetic_energy(monomer_rows(state)), state.counter[CONTACTS]
-
-    def go(state, number=1):
-        go_on(state, grain, state.counter[STEPS] + number, timestep_factor)
-
-    first, rows = None, []
-    between = steps // samples - SAMPLE
-    for _ in range(samples):
-        number = state.counter[STEPS]
-        energies = np.array([sum(energy_after_step(state, go)) for _ in range(SAMPLE)])
-        first = energies[0] if first is None else first
-        error = (energies - first) / start
-        rows.append(
-            dict(
-                **grain_values(grain),
-                timestep_factor=timestep_factor,
-                step=number,
-                error=error.mean(),
-                greatest=np.abs(error).max(),
-                dissipated=dissipated(state).sum() / start,
-                contacts_made=state.counter[CONTACTS] - contacts,
-            )
+    velocity, spin = random_motion(grain, speed, speed / grain.radius.max(), speed / grain.effective_radius)
+    run = evolve(
+        grain.position,
+        grain.radius,
+        velocity,
+        spin,
+        replace(grain.material, critical_rolling_displacement=NO_ROLLING_LIMIT),
+        law=ELASTIC,
+        contacts=grain.contacts,
+        duration=duration,
+        timestep_factor=timestep_factor,
+        records=samples,
+        balance=None,
+    )
+    start = float(run["kinetic_translation"][0] + run["kinetic_spin"][0])
+    return [
+        dict(
+            **grain_values(grain),
+            timestep_factor=timestep_factor,
+            time=float(row["time"]),
+            error=float(row["residual"]) / start,
+            dissipated=float(row["dissipated"].sum()) / start,
+            contacts_made=int(row["n_contacts"]) - grain.n_contacts,
         )
-        go(state, max(between, 0))
-    return rows
+        for row in (run.isel(record=k) for k in range(1, samples + 1))
+    ]
 
 
 def compute(settings, progress=None):
@@ -108,10 +91,10 @@ def compute(settings, progress=None):
         Rows of `COLUMNS`.
     """
     grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
+    duration = settings["steps"] * first_step(grain, settings["steps_at"])
     rows = []
     for f in settings["timestep_factor"]:
-        steps = round(settings["steps"] * settings["steps_at"] / f)
-        rows += course(grain, settings["speed"], f, steps, settings["samples"])
+        rows += course(grain, settings["speed"], f, duration, settings["samples"])
         if progress is not None:
-            progress(f"f = {f:g}: {steps} steps, greatest error {max(row['greatest'] for row in rows):.1e} so far")
+            progress(f"f = {f:g}: greatest error {max(abs(row['error']) for row in rows):.1e} so far")
     return rows

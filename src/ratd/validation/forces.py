@@ -1,39 +1,29 @@
 """Forces and torques of the engine against numerical derivatives of the potentials, and the momenta of free grains."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
-from ratd.drives.rotating import AT_REST
-from ratd.engine.advance import STEPS_DONE, advance
-from ratd.engine.contacts import contact_energies
-from ratd.engine.layout import (
-    DAMPING,
-    DT,
-    INERTIA,
-    INV_XI2,
-    INV_ZETA2,
-    K_ROLL,
-    K_SLIDE,
-    K_TWIST,
-    LANES,
-    LARGEST_MONOMERS,
-    MASS,
-    NIX,
-    NJX,
-    PHI,
-    PULL_OFF,
-    STEPS,
-)
-from ratd.engine.measure import dissipated
-from ratd.engine.state import contact_blocks, monomer_rows, new_state, with_room
+from ratd.engine.contacts import contact_start
+from ratd.engine.forces import contact_forces
+from ratd.engine.layout import FORCE_ROW
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import contact_blocks, new_state
+from ratd.experiments.evolve import evolve
+from ratd.experiments.spin_up.same_grains import first_step
+from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
+from ratd.laws.contact_fields import LANES, SCRATCH_SIZE
+from ratd.laws.jkr_with_springs import K_ROLL, K_SLIDE, K_TWIST, NIX, NJX, PHI, PULL_OFF
 from ratd.laws.tangential import TWISTING_LIMIT
-from ratd.validation.free_grain import SPIN, VELOCITY, go_on, momenta, shaken, with_field
+from ratd.validation.energy_step import ELASTIC, NO_ROLLING_LIMIT
+from ratd.validation.free_grain import random_motion
 from ratd.validation.tables import table_kind
 
 MODES = {"normal": PULL_OFF, "sliding": K_SLIDE, "rolling": K_ROLL, "twisting": K_TWIST}
-"""Mode -> the constant of a contact that switches it off when zero, in the order of `contact_energies`."""
+"""Mode -> the constant of a contact that switches it off when zero, in the order of a law's `energies`."""
 DISSIPATION = ("sliding", "rolling", "twisting", "damping")
 COLUMNS = {
     "study": ("", "derivative: one random contact and mode; momenta: a free grain after some steps"),
@@ -49,7 +39,7 @@ COLUMNS = {
         "1",
         "sum of both forces, and of both torques and the forces' moment, over the greatest of them",
     ),
-    "step": ("1", "steps made"),
+    "time": ("s", "time since the start"),
     "linear": ("1", "change of the momentum over the sum of the magnitudes of its parts at the start"),
     "angular": ("1", "change of the angular momentum over its magnitude at the start"),
     **{f"dissipated_{mode}": ("J", f"energy dissipated so far: {mode}") for mode in DISSIPATION},
@@ -111,27 +101,27 @@ def state_of_contact(contact, material, only=None):
     -------
     State
     """
-    state = new_state(contact["position"], contact["radius"], material, np.array([[0, 1]]), timestep_factor=0.01)
-    for field in (DAMPING, INV_ZETA2, INV_XI2):
-        with_field(state, field, 0.0)
+    free = replace(material, critical_rolling_displacement=NO_ROLLING_LIMIT)
+    parts = ELASTIC, open_space(), leapfrog()
+    state = new_state(contact["position"], contact["radius"], free, np.array([[0, 1]]), *parts)
+    fields = contact_blocks(state)[0, :, 0]
     for mode, field in MODES.items():
         if only not in (None, mode):
-            with_field(state, field, 0.0)
-    for first, pointer in zip((NIX, NJX), contact["pointers"], strict=True):
-        lane = int(first) // LANES
-        contact_blocks(state)[0, lane : lane + 3, 0] = pointer
-    with_field(state, PHI, contact["angle"])
+            fields[field // LANES] = 0.0
+    # the contact is one of the monomers in their order in the state
+    first, second = contact["pointers"][state.identity]
+    for field, pointer in ((NIX, first), (NJX, second)):
+        fields[field // LANES : field // LANES + 3] = pointer
+    fields[PHI // LANES] = contact["angle"]
     return state
 
 
 def engine_forces(contact, material, mode):
-    """Forces (2, 3) [N] and torques (2, 3) [N m] of one mode, from the momenta that one step from rest gives."""
+    """Forces (2, 3) [N] and torques (2, 3) [N m] of one mode on both monomers."""
     state = state_of_contact(contact, material, mode)
-    dt = state.scalar[DT]
-    if advance(state, AT_REST, np.inf, 1, -1, 0.01, True) != STEPS_DONE:
-        raise RuntimeError("the contact ended within one step")
-    rows = monomer_rows(state)
-    return rows[:, MASS, None] * rows[:, VELOCITY] / dt, rows[:, INERTIA, None] * rows[:, SPIN] / dt
+    contact_forces(state, ELASTIC, open_space(), np.zeros(SCRATCH_SIZE), 0.0)
+    rows = state.force.reshape(-1, FORCE_ROW)[np.argsort(state.identity)]
+    return rows[:, :3], rows[:, 4:7]
 
 
 def rotated(vector, axis, angle):
@@ -160,7 +150,8 @@ def numerical_forces(contact, material):
     move = MOVE * equilibrium_compression(r, material.surface_energy, material.reduced_modulus)
 
     def energies(**changed):
-        return np.array(contact_energies(state_of_contact(contact | changed, material), 0))
+        state = state_of_contact(contact | changed, material)
+        return np.array(ELASTIC.energies(state.contact, contact_start(ELASTIC, 0)))
 
     forces, torques = np.zeros((2, len(MODES), 2, 3))
     for monomer in range(2):
@@ -226,35 +217,49 @@ def momenta_of(grain, speed, timestep_factor, steps, samples):
     timestep_factor : float
         f of Eq. 31.
     steps, samples : int
-        Length of the run, and how often the momenta are taken.
+        Length of the run in steps as long as the first, and how often the momenta are taken.
 
     Returns
     -------
     list of dict
         Rows of `COLUMNS`.
+
+    Raises
+    ------
+    RuntimeError
+        If the grain comes apart.
     """
-    state = shaken(grain, speed, speed / grain.radius.min(), grain.seed, timestep_factor=timestep_factor)
-    state = with_room(state, 12 * grain.n_monomers)
-    linear_start, size, angular_start, _ = momenta(state)
-    rows = []
-    for sample in range(1, samples + 1):
-        go_on(state, grain, round(steps * sample / samples), timestep_factor)
-        if state.counter[LARGEST_MONOMERS] != grain.n_monomers:
-            raise RuntimeError(f"the free grain {grain.type} {grain.seed} lost a part; shake it less")
-        linear, _, angular, _ = momenta(state)
-        rows.append(
-            empty_row()
-            | dict(
-                study="momenta",
-                material=grain.material.name,
-                type=grain.type,
-                step=state.counter[STEPS],
-                linear=np.linalg.norm(linear - linear_start) / size,
-                angular=np.linalg.norm(angular - angular_start) / np.linalg.norm(angular_start),
-            )
-            | {f"dissipated_{mode}": value for mode, value in zip(DISSIPATION, dissipated(state), strict=False)}
+    velocity, spin = random_motion(grain, speed, speed / grain.radius.min())
+    run = evolve(
+        grain.position,
+        grain.radius,
+        velocity,
+        spin,
+        grain.material,
+        contacts=grain.contacts,
+        duration=steps * first_step(grain, timestep_factor),
+        timestep_factor=timestep_factor,
+        records=samples,
+        balance=None,
+    )
+    if (run["n_pieces"] > 1).any():
+        raise RuntimeError(f"the free grain {grain.type} {grain.seed} lost a part; shake it less")
+    size = grain.mass @ np.linalg.norm(velocity, axis=1)
+    linear, angular = (np.linalg.norm(run[name] - run[name][0], axis=1) for name in ("momentum", "angular_momentum"))
+    angular /= np.linalg.norm(run["angular_momentum"][0])
+    return [
+        empty_row()
+        | dict(
+            study="momenta",
+            material=grain.material.name,
+            type=grain.type,
+            time=float(run["time"][k]),
+            linear=linear[k] / size,
+            angular=angular[k],
+            **{f"dissipated_{mode}": float(run["dissipated"].sel(way=mode)[k]) for mode in DISSIPATION},
         )
-    return rows
+        for k in range(1, samples + 1)
+    ]
 
 
 def compute(settings, progress=None):

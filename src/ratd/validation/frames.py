@@ -10,14 +10,17 @@ import math
 import numpy as np
 
 from ratd.aggregates.growth import grow
-from ratd.drives.rotating import AT_REST, OMEGA_RAT, angular_velocity, make_drive
-from ratd.engine.contacts import update_contact_rates
-from ratd.engine.layout import DT, TIME
-from ratd.engine.measure import dissipated
-from ratd.engine.state import monomer_rows
+from ratd.drives.free import free
+from ratd.drives.rotating import OMEGA_RAT, angular_velocity, rotating
+from ratd.engine.layout import DT, MASS, RADIUS, TIME, VX, WX, X
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import copied, monomer_rows
+from ratd.engine.step import run, until
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import relax
-from ratd.validation.free_grain import POSITION, SPIN, VELOCITY, copied, go_on, turn
+from ratd.geometry.box import open_space
+from ratd.laws.jkr_with_springs import jkr
+from ratd.observables.energy import dissipated
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 COLUMNS = {
@@ -30,6 +33,9 @@ COLUMNS = {
     "dissipated_energy": ("J", "energy dissipated so far, inertial frame"),
 }
 KIND = table_kind("frames", "Free grains in two frames", COLUMNS)
+POSITION, VELOCITY, SPIN = (slice(int(first), int(first) + 3) for first in (X, VX, WX))
+"""Columns of `ratd.engine.state.monomer_rows`."""
+LAW = jkr()
 
 
 def turned_angle(drive, start, end):
@@ -48,52 +54,39 @@ def about_z(vectors, angle):
     return vectors @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def pair_of_states(start, speed, drive, time, timestep_factor, seed):
+def pair_of_states(start, speed, drive, time, seed):
     """The same motion of a relaxed grain in both frames.
 
     Parameters
     ----------
     start : State
-        From `ratd.experiments.spin_up.run.relax`.
+        From `ratd.experiments.relax.relax`.
     speed : float
         Standard deviation of each component of the velocities, and of the spins times the greatest radius [m/s].
-    drive : Drive
+    drive : Rotating
         Of the turning frame.
     time : float
         At which the run begins [s]. The axes of both frames then agree.
-    timestep_factor : float
-        f of Eq. 31.
     seed : int
         Of the random velocities.
 
     Returns
     -------
     fixed, turning : State
-
-    Notes
-    -----
-    Velocities stand half a step before the positions. There the frame lies back by half a step, and turns with its
-    omega of that moment: taken at the time of the positions, both would be wrong in first order of the step.
     """
-    fixed = copied(start)
-    update_contact_rates(fixed, timestep_factor, True)
-    dt = fixed.scalar[DT]
-    rows = monomer_rows(fixed)
-    rng = np.random.default_rng(seed)
-    noise = rng.normal(size=(len(rows), 6))
-    rows[:, VELOCITY] = speed * noise[:, :3]
-    rows[:, SPIN] = speed / rows[:, 3].max() * noise[:, 3:]
-    turn(rows, np.array([0.0, 0.0, angular_velocity(drive, time)[0]]))
-
-    turning = copied(fixed)
+    axis = np.array([0.0, 0.0, angular_velocity(drive, time)[0]])
+    turning = copied(start)
     turning.scalar[TIME] = time
-    omega, _ = angular_velocity(drive, time - 0.5 * dt)
-    axis = np.array([0.0, 0.0, omega])
-    before = monomer_rows(turning)
-    place = before[:, POSITION] - 0.5 * dt * before[:, VELOCITY]
-    back = turned_angle(drive, time - 0.5 * dt, time)
-    before[:, VELOCITY] = about_z(before[:, VELOCITY] - np.cross(axis, place), back)
-    before[:, SPIN] = about_z(before[:, SPIN], back) - axis
+    rows = monomer_rows(turning)
+    noise = np.random.default_rng(seed).normal(size=(len(rows), 6))
+    rows[:, VELOCITY] = speed * noise[:, :3]
+    # the turning frame follows the centre of mass
+    rows[:, VELOCITY] -= rows[:, MASS] @ rows[:, VELOCITY] / rows[:, MASS].sum()
+    rows[:, SPIN] = speed / rows[:, RADIUS].max() * noise[:, 3:]
+    fixed = copied(turning)
+    rows = monomer_rows(fixed)
+    rows[:, VELOCITY] += np.cross(axis, rows[:, POSITION])
+    rows[:, SPIN] += axis
     return fixed, turning
 
 
@@ -119,18 +112,19 @@ def distances(grain, speed, omega, timestep_factor, samples):
         Rows of `COLUMNS`.
     """
     duration = 1.0 / omega
-    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=omega / duration)._replace(torque=False)
+    drive = rotating("prescribed", omega_1=1.0, angular_acceleration=omega / duration)._replace(torque=False)
     time = omega / drive.acceleration
-    start = relax(grain, timestep_factor=timestep_factor)
-    fixed, turning = pair_of_states(start, speed, drive, time, timestep_factor, grain.seed)
+    integrator = leapfrog(timestep_factor=timestep_factor)
+    start = relax(grain, law=LAW, timestep_factor=timestep_factor)
+    fixed, turning = pair_of_states(start, speed, drive, time, grain.seed)
     first = monomer_rows(fixed)[:, POSITION].copy()
     mean = grain.radius.mean()
     rows = []
     steps = math.ceil(duration / fixed.scalar[DT])
     for sample in range(1, samples + 1):
         goal = round(steps * sample / samples)
-        for state, frame in ((fixed, AT_REST), (turning, drive)):
-            go_on(state, grain, goal, timestep_factor, frame)
+        fixed, _ = run(fixed, LAW, free(), open_space(), integrator, until(steps=goal))
+        turning, _ = run(turning, LAW, drive, open_space(), integrator, until(steps=goal))
         angle = turned_angle(drive, time, turning.scalar[TIME])
         place = monomer_rows(fixed)[:, POSITION]
         other = about_z(monomer_rows(turning)[:, POSITION], angle)
@@ -140,11 +134,11 @@ def distances(grain, speed, omega, timestep_factor, samples):
             dict(
                 **grain_values(grain),
                 timestep_factor=timestep_factor,
-                time=fixed.scalar[TIME],
+                time=fixed.scalar[TIME] - time,
                 turned=angle,
                 distance=np.linalg.norm(other - place, axis=1).max() / mean,
                 moved=np.linalg.norm(place - first, axis=1).max() / mean,
-                dissipated_energy=dissipated(fixed).sum(),
+                dissipated_energy=dissipated(fixed, LAW).sum(),
             )
         )
     return rows

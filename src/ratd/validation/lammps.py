@@ -16,17 +16,30 @@ import numpy as np
 
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
-from ratd.drives.rotating import AT_REST
-from ratd.engine.advance import FULL, advance
-from ratd.engine.fragments import find_fragments
-from ratd.engine.layout import CONTACTS, DT, INERTIA, MASS, RADIUS, STEPS, TIME, VX, VY, WZ, X, Y
-from ratd.engine.state import State, monomer_rows, with_room
+from ratd.drives.free import free
+from ratd.drives.rotating import centre
+from ratd.engine.fragments import contact_pairs, label_fragments
+from ratd.engine.layout import DT, INERTIA, MASS, RADIUS, TIME, VX, VY, WZ, X, Y
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import copied, monomer_rows
+from ratd.engine.step import run, until
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import relax
+from ratd.geometry.box import open_space
 from ratd.geometry.neighbours import connected_components
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
-from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, S_TOUCH, compression_of, contact_state, normal_force
+from ratd.laws.jkr_with_springs import jkr
+from ratd.laws.johnson_kendall_roberts import (
+    COMPRESSION_END,
+    S_PULL_OFF,
+    S_TOUCH,
+    compression_of,
+    contact_state,
+    normal_force,
+)
+from ratd.observables.pieces import heaviest_pieces
 from ratd.validation import peer_lammps
+from ratd.validation.energy_step import NO_ROLLING_LIMIT
 from ratd.validation.peer_lammps import Spheres, stable_step
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -62,8 +75,6 @@ PARTS = 8
 """A grain is looked at so many times in a run, which ends where it has lost 25 % of its mass."""
 FIRST_OMEGA = 0.4
 """Driven grains are looked at from this part of the cut bound on."""
-NO_ROLLING_LIMIT = 1.0
-"""Critical rolling displacement that no contact gets to [m]."""
 GREATEST_RATIO = 2.0
 """No omega above this part of the cut bound is tried."""
 
@@ -74,16 +85,15 @@ class InRatd:
     Parameters
     ----------
     state : State
-        Of `ratd.experiments.spin_up.run.relax`; it is copied.
+        Of `ratd.experiments.relax.relax`; it is copied.
     timestep_factor : float
         f of Eq. 31.
     """
 
     def __init__(self, state, timestep_factor):
-        self._state = State(*(array.copy() for array in state))
-        self._timestep_factor = timestep_factor
+        self._state = copied(state)
+        self._integrator = leapfrog(timestep_factor=timestep_factor)
         self._omega = 0.0
-        find_fragments(self._state)
         self._mass = monomer_rows(self._state)[:, MASS].sum()
         self.timestep = float(self._state.scalar[DT])
 
@@ -103,16 +113,13 @@ class InRatd:
 
     def advance(self, duration):
         """Integrate for `duration` [s]."""
-        end = self._state.scalar[TIME] + duration
-        while self._state.scalar[TIME] < end:
-            scalar, counter = self._state.scalar, self._state.counter
-            goal = counter[STEPS] + int(np.ceil((end - scalar[TIME]) / scalar[DT]))
-            if advance(self._state, AT_REST, np.inf, goal, -1, self._timestep_factor, True) == FULL:
-                self._state = with_room(self._state, 2 * len(self._state.pair_i))
+        end = until(time=self._state.scalar[TIME] + duration)
+        self._state, _ = run(self._state, jkr(), free(), open_space(), self._integrator, end)
 
     def unwind(self):
         """Make the largest fragment turn with the sum of all `turn` again, as the outer torque of `prescribed` does."""
-        find_fragments(self._state)  # which puts the origin, at rest, into its centre of mass
+        label_fragments(self._state)
+        centre(self._state)  # the origin is at rest in its centre of mass
         rows = monomer_rows(self._state)
         members = rows[self._state.fragment[: len(rows)] == 0]
         x, y, mass, own = (members[:, field] for field in (X, Y, MASS, INERTIA))
@@ -125,9 +132,7 @@ class InRatd:
 
     def mass_left(self):
         """Mass of the largest fragment over that of the grain."""
-        find_fragments(self._state)
-        rows = monomer_rows(self._state)
-        return float(rows[self._state.fragment[: len(rows)] == 0, MASS].sum() / self._mass)
+        return float(heaviest_pieces(self._state, 1)[0] / self._mass)
 
 
 class InLammps:
@@ -136,7 +141,7 @@ class InLammps:
     Parameters
     ----------
     state : State
-        Of `ratd.experiments.spin_up.run.relax`.
+        Of `ratd.experiments.relax.relax`.
     material : ratd.Material
     turning : bool
         Whether it is described in a frame that turns, where `turn` acts on the frame.
@@ -145,10 +150,8 @@ class InLammps:
     def __init__(self, state, material, turning=False):
         rows = monomer_rows(state)
         radius, self._mass = rows[:, RADIUS].copy(), rows[:, MASS].copy()
-        n = state.counter[CONTACTS]
-        contacts = np.column_stack([state.pair_i[:n], state.pair_j[:n]]).astype(np.int64)
         self._turning, self._omega = turning, 0.0
-        self.timestep = stable_step(radius, material, contacts, float(state.scalar[DT]))
+        self.timestep = stable_step(radius, material, contact_pairs(state), float(state.scalar[DT]))
         self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep)
 
     def __enter__(self):

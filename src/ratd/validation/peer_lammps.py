@@ -16,7 +16,7 @@ import numpy as np
 
 from ratd.base.errors import InputError
 from ratd.laws.contact_constants import equilibrium_contact_radius, pull_off_force, reduced_radius
-from ratd.laws.jkr import damping_coefficient
+from ratd.laws.johnson_kendall_roberts import viscoelastic_damping
 from ratd.laws.tangential import (
     TWISTING_LIMIT,
     rolling_stiffness,
@@ -126,10 +126,10 @@ def pair_coefficients(a_i, a_j, material):
     r0 = equilibrium_contact_radius(r, gamma, e_star)
     at_rest = 2.0 * pull_off_force(r, gamma)
     m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
-    damping = damping_coefficient(r0, e_star, nu, material.viscous_time) * (m_i + m_j) / (m_i * m_j * r0)
-    slide = sliding_stiffness(r0, material.shear_modulus, nu)
+    damping = viscoelastic_damping(r0, e_star, material.viscous_time / nu**2) * (m_i + m_j) / (m_i * m_j * r0)
+    slide = sliding_stiffness(r0, material.shear_modulus / (2.0 * (2.0 - nu)))
     roll = rolling_stiffness(pull_off_force(r, gamma), r) / r**2
-    twist = twisting_stiffness(r0, material.shear_modulus)
+    twist = twisting_stiffness(r0, 0.5 * material.shear_modulus)
     return {
         "jkr": (material.youngs_modulus, damping, nu, gamma),
         "tangential linear_history": (slide, 0.0, slide * sliding_limit(r0, nu) / at_rest),
@@ -159,7 +159,7 @@ def stable_step(radius, material, contacts, most):
     i, j = np.asarray(contacts).T
     gamma, e_star = material.surface_energy, material.reduced_modulus
     r0 = equilibrium_contact_radius(reduced_radius(radius[i], radius[j]), gamma, e_star)
-    c = 2.0 * e_star / material.poisson_number**2 * r0 * material.viscous_time
+    c = viscoelastic_damping(r0, e_star, material.viscous_time / material.poisson_number**2)
     total = np.bincount(i, c, len(radius)) + np.bincount(j, c, len(radius))
     rate = total / (4.0 / 3.0 * math.pi * material.density * radius**3)
     return min(most, DAMPING_STEP / (rate[i] + rate[j]).max())

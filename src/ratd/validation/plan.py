@@ -33,7 +33,7 @@ class Plan:
     def __init__(self, path):
         self.config = read_yaml(path)
         try:
-            self.results, self.docs = self.config["results"], self.config["docs"]
+            self.results = self.config["results"]
             self.pieces = {
                 extent: {check: self._pieces(check, own) for check, own in self.config[extent].items()}
                 for extent in EXTENTS
@@ -45,11 +45,9 @@ class Plan:
                 f"{path}: a value is of the wrong kind ({error}); allowed: lists, mappings and numbers where "
                 "config/validation.yaml as it comes with ratd has them"
             ) from None
-        if self.docs not in EXTENTS:
-            raise InputError(f"{path}: docs is {self.docs!r}; allowed: {', '.join(EXTENTS)}")
 
-    def files(self, extent, check, names=None):
-        """Files of pieces of a check, of all of them if no names are given.
+    def files(self, extent, check):
+        """Files of all pieces of a check.
 
         Raises
         ------
@@ -58,8 +56,7 @@ class Plan:
         """
         if check == "lammps":
             peer_lammps.load()
-        names = self.pieces[extent][check] if names is None else names
-        return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in names]
+        return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
 
     def _pieces(self, check, own):
         return {

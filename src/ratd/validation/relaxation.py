@@ -11,9 +11,10 @@ import numpy as np
 
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
-from ratd.engine.layout import CONTACTS, X
+from ratd.engine.fragments import contact_pairs
+from ratd.engine.layout import X
 from ratd.engine.state import monomer_rows
-from ratd.experiments.spin_up.run import relax
+from ratd.experiments.relax import relax
 from ratd.geometry.neighbours import connected_components
 from ratd.geometry.shape import centre_of_mass, principal_axes
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
@@ -52,10 +53,9 @@ def rest(grain, timestep_factor):
         If the grain does not come to rest.
     """
     state = relax(grain, timestep_factor=timestep_factor)
-    n = state.counter[CONTACTS]
-    pairs = np.column_stack([state.pair_i[:n], state.pair_j[:n]]).astype(np.int64)
+    pairs = state.identity[contact_pairs(state)]
     before, after = ({tuple(sorted(pair)) for pair in each.tolist()} for each in (grain.contacts, pairs))
-    position = monomer_rows(state)[:, X : X + 3]
+    position = monomer_rows(state)[np.argsort(state.identity), X : X + 3]
     distance = [
         np.linalg.norm(each - centre_of_mass(each, grain.mass), axis=1)
         for each in (grain.position, np.ascontiguousarray(position))

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from ratd.drives.rotating import angular_velocity, make_drive
+from ratd.drives.rotating import angular_velocity, rotating
 from ratd.experiments.spin_up.pairs import holding_omega
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
-from ratd.laws.jkr import (
+from ratd.laws.johnson_kendall_roberts import (
     COMPRESSION_END,
     S_END,
     S_PULL_OFF,
@@ -159,7 +159,7 @@ def vibrating_omega(a_1, a_2, material, epsilon):
     """
     pair = Pair.of(a_1, a_2, material)
     half = 0.5 * pair.force_controlled_omega
-    drive = make_drive("prescribed", omega_1=half, epsilon=epsilon)
+    drive = rotating("prescribed", omega_1=half, epsilon=epsilon)
     delta_0 = pair.equilibrium_compression
 
     def motion(phase, y):  # y: stretch (r - a_1 - a_2)/delta_0 and its rate, over the phase frequency * t

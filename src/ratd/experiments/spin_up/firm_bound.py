@@ -86,8 +86,9 @@ def slide_forces(R, material):
         Eq. 13 at the limit zeta_c of sliding; with both in the form of `ratd.laws.tangential` G r_0^2/(4 pi).
     """
     r0 = equilibrium_contact_radius(R, material.surface_energy, material.reduced_modulus)
-    stiffness = sliding_stiffness(r0, material.shear_modulus, material.poisson_number)
-    return stiffness * sliding_limit(r0, material.poisson_number)
+    nu = material.poisson_number
+    stiffness = sliding_stiffness(r0, material.shear_modulus / (2.0 * (2.0 - nu)))
+    return stiffness * sliding_limit(r0, nu)
 
 
 def bridge_pulls(load, contacts):

@@ -1,59 +1,114 @@
-"""What single formulae of the paper change, where the consistent model does not use them as printed.
+"""What single formulae of the paper change: the same grains with one as printed, beside the consistent model.
 
-`use` puts one printed formula in the place of that of the model, in this process only, before any code that needs it is
-compiled. Code compiled with it is kept in a cache of its own, so that no other process meets it. The printed formulae
-stand here and nowhere else: nothing but this study computes with them.
+The printed formulae stand here and nowhere else: nothing but this study computes with them.
 """
 
-import hashlib
-import math
-import sys
-from pathlib import Path
+import pandas as pd
 
-import numba
+from ratd.base.statistics import median_of
+from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.parameters import beside_own, marks_row
 
-from ratd.base import jit as _accelerate
-from ratd.laws import tangential
+__all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table", "printed_factors"]
 
-__all__ = ["use"]
+OWN = "consistent"
+DAMPING = "damping"
+FORMULAE = {
+    OWN: "the consistent model",
+    "sliding_stiffness": "sliding stiffness of Eq. 13 with G* = G/(2 - 2 nu^2)",
+    "sliding_limit": "zeta_c = r0 (1 - nu)/(16 pi)",
+    "twisting_stiffness": "twisting stiffness of Eq. 17 with G* = G/(2 - 2 nu^2)",
+    DAMPING: "no damping force, as in Eq. 29",
+}
+"""Name -> what is used as printed; all else is the consistent model. Those of contacts are options of
+`ratd.laws.jkr`, see `printed_factors`; without the damping the material has the viscous time 0."""
+
+FORMULA_COLUMNS = {
+    "formula": ("", f"what is used as printed: {', '.join(FORMULAE)}"),
+    "material": ("", "material of the monomers"),
+    "type": ("", "growth: BA, BAM1 or BAM2"),
+    "drive": ("", "what turns the grain: prescribed or literal"),
+    "a_eff": ("m", "effective radius"),
+    "seed": ("1", "seed of the grain"),
+    "omega_disr": ("rad s-1", "angular velocity of disruption: peak of the total stress before the grain collapses"),
+    "omega_mass_75": ("rad s-1", "angular velocity at which the largest fragment has lost 25 % of the initial mass"),
+    "omega_disr_ratio": ("1", "omega_disr over that of the same grain in the consistent model"),
+    "omega_mass_75_ratio": ("1", "omega_mass_75 over that of the same grain in the consistent model"),
+}
+"""Units and meaning of the columns of `formula_table`."""
 
 
-def use(formula, poisson_number):
-    """Compute with one formula as printed for the rest of this process.
+def printed_factors(formula, poisson_number):
+    """Factors with which one formula of a contact is as printed.
 
     Parameters
     ----------
     formula : str
-        A name of `ratd.experiments.spin_up.formula_table.FORMULAE`.
+        A name of `FORMULAE`.
     poisson_number : float
-        nu of the material of all grains that follow, since Eq. 17 of the model does not need it and that of the
-        paper does.
+        nu of the material of the grains.
+
+    Returns
+    -------
+    dict of str to float
+        Options of `ratd.laws.jkr`; none where the formula is not one of contacts.
+
+    Notes
+    -----
+    Printed over ours: G/(2 - 2 nu^2) over G/(2 (2 - nu)) (Eq. 13); 1 - nu over 2 - nu; G/(2 - 2 nu^2) over G/2
+    (Eq. 17).
+    """
+    nu = poisson_number
+    factors = {
+        "sliding_stiffness": (2.0 - nu) / (1.0 - nu**2),
+        "sliding_limit": (1.0 - nu) / (2.0 - nu),
+        "twisting_stiffness": 1.0 / (1.0 - nu**2),
+    }
+    return {formula: factors[formula]} if formula in factors else {}
+
+
+def formula_table(files):
+    """Marks of all grains with every formula, and over those of the same grain in the consistent model.
+
+    Parameters
+    ----------
+    files : list of (str, list of xarray.Dataset)
+        A name of `FORMULAE`, and the marks of some grains from `ratd.disruption`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of `FORMULA_COLUMNS`; a ratio is NaN where one of the two marks is.
 
     Raises
     ------
-    RuntimeError
-        If the engine was loaded before, with the formulae of the model.
+    InputError
+        If a grain was not spun up in the consistent model.
     """
-    if "ratd.engine.contacts" in sys.modules:
-        raise RuntimeError("the engine is loaded already: choose the formula before anything imports it")
-    printed = _printed(poisson_number)
-    if formula in printed:
-        text = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:16]
-        numba.config.CACHE_DIR += f"-{formula}-{poisson_number!r}-{text}"
-        setattr(tangential, formula, _accelerate.jit(printed[formula]))
+    rows = [{"formula": formula} | marks_row(marks) for formula, grains in files for marks in grains]
+    table = pd.DataFrame(rows, columns=list(FORMULA_COLUMNS))
+    return beside_own(table, table["formula"] == OWN, "the consistent model")
 
 
-def _printed(nu):
-    """The printed formulae, with the arguments of those in `ratd.laws.tangential`; G* = G/(2 - 2 nu^2)."""
-    softening = 2.0 - 2.0 * nu * nu
+def formula_effects(table, mark):
+    """How far each printed formula moves a mark: medians over the grains of a type and size, and over all of a size.
 
-    def sliding_stiffness(equilibrium_contact_radius, shear_modulus, poisson_number):
-        return 8.0 * equilibrium_contact_radius * shear_modulus / softening
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `formula_table`.
+    mark : str
+        One of `parameters.MARKS`.
 
-    def sliding_limit(equilibrium_contact_radius, poisson_number):
-        return equilibrium_contact_radius * (1.0 - nu) / (16.0 * math.pi)
-
-    def twisting_stiffness(equilibrium_contact_radius, shear_modulus):
-        return 16.0 / 3.0 * shear_modulus / softening * equilibrium_contact_radius**3
-
-    return {function.__name__: function for function in (sliding_stiffness, sliding_limit, twisting_stiffness)}
+    Returns
+    -------
+    pandas.DataFrame
+        One row a formula, size and type (``all`` for all of them together): formula, nm (the size), type, and what
+        `median_of` of ratd.base.statistics gives for the ratio to the consistent model.
+    """
+    rows = []
+    changed = table[table["formula"] != OWN]
+    for (formula, size), part in changed.groupby(["formula", size_key(changed["a_eff"])], sort=False):
+        for kind, here in [*part.groupby("type"), ("all", part)]:
+            rows.append({"formula": formula, "nm": size / 1000, "type": kind} | median_of(here[f"{mark}_ratio"]))
+    return pd.DataFrame(rows)

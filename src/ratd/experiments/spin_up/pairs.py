@@ -1,15 +1,16 @@
 """Two monomers that are spun up until they part (Fig. 10): by the engine, and the answers that it is compared with."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from ratd.drives.rotating import make_drive
-from ratd.engine.advance import FEW_CONTACTS, advance
-from ratd.engine.layout import OMEGA
+from ratd.drives.rotating import OMEGA, rotating
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
+from ratd.engine.step import FEW_CONTACTS, run, until
+from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
+from ratd.laws.jkr_with_springs import jkr
 
 __all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega"]
 
@@ -25,7 +26,8 @@ PAIR_COLUMNS = {
 }
 """Units and meaning of the columns of `pairs`."""
 STARTS = ("damped", "undamped")
-PIECES = 200
+HIGHEST = 3.0
+"""A pair that holds up to so many times the omega that is expected never parts."""
 
 
 def holding_omega(pull_off, reduced_mass, distance):
@@ -67,8 +69,6 @@ def parting_omega(a_1, a_2, material, *, epsilon, timestep_factor, damped=True):
     -------
     float
     """
-    if not damped:
-        material = replace(material, viscous_time=0.0)
     expected = force_controlled_omega(a_1, a_2, material)
     overlap = 0.0
     if damped:
@@ -76,13 +76,12 @@ def parting_omega(a_1, a_2, material, *, epsilon, timestep_factor, damped=True):
     distance = a_1 + a_2 - overlap
     share = a_2**3 / (a_1**3 + a_2**3)
     position = np.array([[-share * distance, 0.0, 0.0], [(1.0 - share) * distance, 0.0, 0.0]])
-    state = new_state(position, np.array([a_1, a_2]), material, np.array([[0, 1]]), timestep_factor=timestep_factor)
-    motion = make_drive("prescribed", omega_1=0.5 * expected, epsilon=epsilon)
-    # Piece by piece, as in a spin-up: each call puts the origin back into the centre of mass.
-    for goal in np.arange(1, 3 * PIECES) * expected / PIECES:
-        if advance(state, motion, goal, np.iinfo(np.int64).max, 0, timestep_factor, True) == FEW_CONTACTS:
-            return float(state.scalar[OMEGA])
-    return math.nan
+    law = jkr(damping="viscoelastic" if damped else "none")
+    box, integrator = open_space(), leapfrog(timestep_factor=timestep_factor)
+    state = new_state(position, np.array([a_1, a_2]), material, np.array([[0, 1]]), law, box, integrator)
+    drive = rotating("prescribed", omega_1=0.5 * expected, epsilon=epsilon)
+    state, code = run(state, law, drive, box, integrator, until(clock=HIGHEST * expected, fewest_contacts=0))
+    return float(state.drive[OMEGA]) if code == FEW_CONTACTS else math.nan
 
 
 def pairs(material, number, seed, smallest, largest, *, damped, undamped, progress=None):

@@ -86,7 +86,8 @@ def record(state, law, density):
         float(drive[OMEGA]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
         float(counter[LARGEST_CONTACTS]), stress, a, b, c, porosity,
         sliding, rolling, twisting, damping, made + broken,
-        float(drive[TORQUE_WORK]), sum(kinetic(state, drive[OMEGA], True)), stored(state, law, True).sum(), float(counter[FRAGMENTS_LOST]), float(scalar[DT]),
+        float(drive[TORQUE_WORK]), sum(kinetic(state, drive[OMEGA], True)), stored(state, law, True).sum(),
+        float(counter[FRAGMENTS_LOST]), float(scalar[DT]),
     ]  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.records import RECORDS, Watch, dataset, edge_of_record, let_go, record, snapshot
 from ratd.geometry.box import open_space
-from ratd.laws import jkr
+from ratd.laws.jkr_with_springs import jkr
 
 __all__ = ["spin_up"]
 

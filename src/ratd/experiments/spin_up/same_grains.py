@@ -12,8 +12,11 @@ from ratd.aggregates.growth import grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.experiments.spin_up.run import spin_up
+from ratd.geometry.box import open_space
+from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline.partial import Block
 
 __all__ = ["first_step", "of_material", "spin_up_ways", "steps_to", "way_material"]
@@ -44,7 +47,8 @@ def way_material(way):
 
 def first_step(grain, timestep_factor):
     """Time step [s] with which a spin-up of a grain as grown begins, by Eq. 31."""
-    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=timestep_factor)
+    parts = jkr(), open_space(), leapfrog(timestep_factor=timestep_factor)
+    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, *parts)
     return float(state.scalar[DT])
 
 
@@ -57,7 +61,7 @@ def steps_to(grain, reach, angular_acceleration, timestep_factor):
     return int(reach * (angular_acceleration / dt) ** (1.0 / 3.0) / angular_acceleration / dt)
 
 
-def spin_up_ways(job, targets, ways, kind, row):
+def spin_up_ways(job, targets, ways, kind, row, *, law=None):
     """Write a file for each way in which the same grains are spun up; a killed job goes on where it was.
 
     Parameters
@@ -73,6 +77,8 @@ def spin_up_ways(job, targets, ways, kind, row):
         Kind of the files, a key of `ratd.pipeline.schema.KINDS`.
     row : callable
         Makes the row of a grain in such a file from the run that `ratd.spin_up` returns.
+    law : part, optional
+        Contact law of all runs, see `ratd.spin_up`.
     """
     of_target = dict(zip(map(str, targets), ways, strict=True))
     blocks = [
@@ -89,7 +95,7 @@ def spin_up_ways(job, targets, ways, kind, row):
                 acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
                 how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
             progress = job.progress(seed, f"{block.target.stem} ")
-            done(number, row(spin_up(grain, checkpoint=block.checkpoint(seed), progress=progress, **how)))
+            done(number, row(spin_up(grain, law=law, checkpoint=block.checkpoint(seed), progress=progress, **how)))
 
     job.blocks(blocks, kind, make)
 

@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
 from ratd.base.markdown import plural
-from ratd.experiments.spin_up.formula_table import OWN, formula_effects
+from ratd.experiments.spin_up.formulae import OWN, formula_effects
 from ratd.experiments.spin_up.parameters import MARKS
 from ratd.pictures.style import TWO_COLUMNS, drive_of, drive_text, new_figure, styled, type_style
 

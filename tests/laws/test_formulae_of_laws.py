@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from ratd.base.materials import MATERIALS
-from ratd.laws import jkr, tangential
+from ratd.laws import johnson_kendall_roberts as jkr
+from ratd.laws import tangential
 from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
+from ratd.laws.material_pair import material_pair, material_row
 
 MATERIAL = MATERIALS["q-S"]
 RADII = [(30e-9, 30e-9), (10e-9, 100e-9), (100e-9, 10e-9)]
@@ -113,7 +115,9 @@ def test_damping_ratios(name, ratios):
     for a, ratio in zip((10e-9, 41e-9, 100e-9), ratios, strict=True):
         r = a / 2
         r0 = equilibrium_contact_radius(r, material.surface_energy, material.reduced_modulus)
-        c = jkr.damping_coefficient(r0, material.reduced_modulus, material.poisson_number, material.viscous_time)
+        c = jkr.viscoelastic_damping(
+            r0, material.reduced_modulus, material.viscous_time / material.poisson_number**2
+        )
         m_red = 2 / 3 * math.pi * a**3 * material.density
         # the table of docs/model/laws.md is rounded to its last digit
         assert c / (2 * math.sqrt(1.2 * material.reduced_modulus * r0 * m_red)) == pytest.approx(ratio, rel=0.12)
@@ -121,9 +125,10 @@ def test_damping_ratios(name, ratios):
 
 def test_limits_and_stiffnesses():
     nu, shear = 0.2, 3e10
-    assert tangential.sliding_stiffness(1e-9, shear, nu) == pytest.approx(8e-9 * shear / 3.6)
+    pair = material_pair(*[np.array([0.1, 2 * (1 + nu) * shear, nu, 1e-9, 1e-12])] * 2)
+    assert tangential.sliding_stiffness(1e-9, pair.sliding_modulus) == pytest.approx(8e-9 * shear / 3.6)
     assert tangential.sliding_limit(1e-9, nu) == pytest.approx(1.8e-9 / (16 * math.pi))
-    assert tangential.twisting_stiffness(1e-9, shear) == pytest.approx(16 / 3 * shear / 2 * 1e-27)
+    assert tangential.twisting_stiffness(1e-9, pair.twisting_modulus) == pytest.approx(16 / 3 * shear / 2 * 1e-27)
     assert tangential.rolling_stiffness(1e-9, 2e-8) == pytest.approx(8e-17)
     assert pytest.approx(0.0198943678865) == tangential.TWISTING_LIMIT
 
@@ -180,3 +185,28 @@ def test_excess_is_what_lies_beyond_the_limit():
     assert tangential.excess_fraction(4.0) == pytest.approx(0.5, abs=1e-15)
     assert [tangential.excess_fraction(square) for square in (0.0, 1e-300, 0.25, 1.0)] == [0.0] * 4
     assert tangential.excess_fraction(1.0 + 1e-9) == pytest.approx(5e-10, abs=3e-16)
+
+
+def test_constants_of_two_materials_are_those_of_one_when_they_are_the_same():
+    nu = MATERIAL.poisson_number
+    pair = material_pair(*[np.array(material_row(MATERIAL))] * 2)
+    assert pair.surface_energy == pytest.approx(MATERIAL.surface_energy, rel=1e-14)
+    assert pair.reduced_modulus == pytest.approx(MATERIAL.reduced_modulus, rel=1e-14)
+    assert pair.sliding_modulus == pytest.approx(MATERIAL.shear_modulus / (2 * (2 - nu)), rel=1e-14)
+    assert pair.twisting_modulus == pytest.approx(MATERIAL.shear_modulus / 2, rel=1e-14)
+    assert pair.poisson_number == pytest.approx(nu, rel=1e-14)
+    assert pair.rolling_limit == pytest.approx(MATERIAL.critical_rolling_displacement, rel=1e-14)
+    assert pair.viscosity == pytest.approx(MATERIAL.viscous_time / nu**2, rel=1e-14)
+
+
+def test_constants_of_two_materials():
+    """1/E* is the sum of what each gives; a rigid partner leaves the other's; the order does not matter."""
+    ice, silica = (np.array(material_row(MATERIALS[name])) for name in ("ice", "silica"))
+    both = material_pair(ice, silica)
+    assert both == pytest.approx(material_pair(silica, ice), rel=1e-14)
+    assert 1 / both.reduced_modulus == pytest.approx((1 - 0.25**2) / 7e9 + (1 - 0.17**2) / 54e9, rel=1e-12)
+    assert both.surface_energy == pytest.approx(math.sqrt(0.1 * 0.025), rel=1e-12)
+    assert both.rolling_limit == pytest.approx(0.45e-9, rel=1e-12)
+    rigid = silica.copy()
+    rigid[1] *= 1e12
+    assert material_pair(ice, rigid).reduced_modulus == pytest.approx(2 * MATERIALS["ice"].reduced_modulus, rel=1e-9)

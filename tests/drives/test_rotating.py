@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from ratd.base.errors import InputError
-from ratd.drives.rotating import OMEGA_RAT, SOFT_START, angular_velocity, kick_and_drift, make_drive
+from ratd.drives.rotating import OMEGA_RAT, SOFT_START, angular_velocity, kick_and_drift, rotating
 from ratd.engine import layout
 
 
 def test_constant_epsilon_law():
-    drive = make_drive("prescribed", omega_1=1e8, epsilon=0.02)
+    drive = rotating("prescribed", omega_1=1e8, epsilon=0.02)
     assert angular_velocity(drive, 0.0)[0] == 0.0
     times = np.linspace(0, 1.4 / (0.02 * 1e8), 4001)
     omega, slope = np.array([angular_velocity(drive, t) for t in times]).T
@@ -25,7 +25,7 @@ def test_constant_epsilon_law():
 
 
 def test_exponential_law_is_eq_24():
-    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=1e15)
+    drive = rotating("prescribed", omega_1=1.0, angular_acceleration=1e15)
     tau = OMEGA_RAT / 1e15
     for t in (0.0, 1e-9, 1e-5, 1e-4):
         omega, slope = angular_velocity(drive, t)
@@ -42,7 +42,7 @@ def free_monomer(position, velocity, spin):
 
 def test_free_monomer_goes_straight_in_the_inertial_frame():
     """Centrifugal, Coriolis and Euler terms, and those of the spin, in a frame that turns ever faster."""
-    drive = make_drive("prescribed", omega_1=1.0, angular_acceleration=3e16)._replace(torque=False)
+    drive = rotating("prescribed", omega_1=1.0, angular_acceleration=3e16)._replace(torque=False)
     x_0, v_0, w_0 = np.array([1e-7, 0, 2e-8]), np.array([3.0, 7.0, -1.0]), np.array([2e7, -3e7, 4e7])
     errors = []
     for steps in (500, 1000):
@@ -54,7 +54,7 @@ def test_free_monomer_goes_straight_in_the_inertial_frame():
         monomer, force = free_monomer(x_0, v, w_0), np.zeros(layout.FORCE_ROW)
         for step in range(steps):
             omega, domega = angular_velocity(drive, step * dt)
-            kick_and_drift(monomer, force, 1, dt, omega, domega, 0.0, drive)
+            kick_and_drift(monomer, force, 1, dt, dt, omega, domega, 0.0, drive)
         t = steps * dt
         tau = OMEGA_RAT / 3e16
         angle = OMEGA_RAT * (t + tau * math.expm1(-t / tau))
@@ -67,11 +67,11 @@ def test_free_monomer_goes_straight_in_the_inertial_frame():
 
 
 def test_literal_frame_lacks_torque_and_spin_terms():
-    literal = make_drive("literal", omega_1=1e8, angular_acceleration=1e15)
+    literal = rotating("literal", omega_1=1e8, angular_acceleration=1e15)
     assert not literal.torque and not literal.spin_terms and literal.explicit_coriolis
-    assert not make_drive("literal", omega_1=1e8, angular_acceleration=1e15, coriolis="exact").explicit_coriolis
+    assert not rotating("literal", omega_1=1e8, angular_acceleration=1e15, coriolis="exact").explicit_coriolis
     monomer, force = free_monomer([1e-7, 0, 0], [0, 0, 0], [1e7, 0, 0]), np.zeros(layout.FORCE_ROW)
-    kick_and_drift(monomer, force, 1, 1e-12, 1e9, 1e15, 0.0, literal)
+    kick_and_drift(monomer, force, 1, 1e-12, 1e-12, 1e9, 1e15, 0.0, literal)
     np.testing.assert_array_equal(monomer[8:11], [1e7, 0, 0])
     np.testing.assert_allclose(monomer[4:7], [1e18 * 1e-7 * 1e-12, -1e15 * 1e-7 * 1e-12, 0.0], rtol=1e-12)
 
@@ -80,13 +80,13 @@ def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
     """A free monomer at rest in the inertial frame: the explicit term drives it outwards (docs/model/drives.md)."""
     speeds = {}
     for coriolis in ("explicit", "exact"):
-        drive = make_drive("literal", omega_1=1e8, epsilon=0.02, coriolis=coriolis)
+        drive = rotating("literal", omega_1=1e8, epsilon=0.02, coriolis=coriolis)
         omega, dt = 2e9, 1e-12
         back = 0.5 * omega * dt  # the velocity stands half a step before the position
         start = omega * 1e-7 * np.array([np.sin(back), -np.cos(back), 0.0])
         monomer, force = free_monomer([1e-7, 0, 0], start, [0, 0, 0]), np.zeros(layout.FORCE_ROW)
         for _ in range(100_000):
-            kick_and_drift(monomer, force, 1, dt, omega, 0.0, 0.0, drive)
+            kick_and_drift(monomer, force, 1, dt, dt, omega, 0.0, 0.0, drive)
         speeds[coriolis] = np.hypot(monomer[0], monomer[1]) / 1e-7
     # the exact one is of second order: an acceleration of 0.4 (omega dt)^2 of the centrifugal one is left
     assert speeds["exact"] == pytest.approx(1.0, abs=0.05)
@@ -106,4 +106,4 @@ def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
 )
 def test_bad_drives_are_refused_in_one_sentence(arguments, words):
     with pytest.raises(InputError, match=words):
-        make_drive(**{"omega_1": 1e8, "epsilon": 0.02} | arguments)
+        rotating(**{"omega_1": 1e8, "epsilon": 0.02} | arguments)

@@ -5,28 +5,29 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
-from ratd.validation.show import lammps as show_lammps
 
 import ratd
 from ratd.base.materials import MATERIALS
-from ratd.engine.layout import DT_DRIFT, VX, WX, X
+from ratd.engine.layout import VX, WX, X
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import relax
+from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
     pull_off_force,
     reduced_radius,
 )
-from ratd.laws.jkr import COMPRESSION_END, S_PULL_OFF, compression_of
+from ratd.laws.jkr_with_springs import jkr
+from ratd.laws.johnson_kendall_roberts import COMPRESSION_END, S_PULL_OFF, compression_of
 from ratd.validation import lammps, peer_lammps
 from ratd.validation.plan import EXTENTS, Plan
 from ratd.validation.tables import read_tables, write_table
 
-CONFIG = Path(__file__).parents[1] / "config" / "validation.yaml"
+CONFIG = Path(__file__).parents[2] / "config" / "validation.yaml"
 
 
 def installed():
@@ -132,8 +133,8 @@ def move_a_pair(mode, speed, duration, material=MATERIALS["q-S"]):
     def joined(velocity, spin):
         return np.concatenate([velocity, spin * RADII[:, None]]) / speed
 
-    state = new_state(position, RADII, material, np.array([[0, 1]]), timestep_factor=0.001)
-    state.scalar[DT_DRIFT] = 0.0
+    parts = jkr(), open_space(), leapfrog(timestep_factor=0.001)
+    state = new_state(position, RADII, material, np.array([[0, 1]]), *parts)
     grain = lammps.InRatd(state, 0.001)
     rows = monomer_rows(grain._state)
     rows[:, VX : VX + 3], rows[:, WX : WX + 3] = velocity, spin
@@ -231,7 +232,7 @@ def test_a_grain_holds_or_comes_apart_in_both_codes(small_grain, part, whole):
 @needs_lammps
 def test_unwinding_takes_the_angular_momentum_out(small_grain):
     grain, state = small_grain
-    rows = monomer_rows(state)
+    rows = monomer_rows(state)[np.argsort(state.identity)]
     with peer_lammps.Spheres(rows[:, X : X + 3], grain.radius, grain.material, 1e-13) as spheres:
         n = grain.n_monomers
         members = np.arange(n) < n - 1
@@ -266,7 +267,7 @@ def test_unwinding_in_ratd_gives_the_angular_momentum_of_omega(small_grain):
 @needs_lammps
 def test_contacts_of_lammps_are_those_of_the_relaxed_grain(small_grain):
     grain, state = small_grain
-    rows = monomer_rows(state)
+    rows = monomer_rows(state)[np.argsort(state.identity)]
     with peer_lammps.Spheres(rows[:, X : X + 3], grain.radius, grain.material, 1e-13) as spheres:
         found = {tuple(sorted(pair)) for pair in spheres.contacts().tolist()}
         pull = pull_off_force(reduced_radius(grain.radius.min(), grain.radius.min()), grain.material.surface_energy)
@@ -317,7 +318,7 @@ def test_both_starts_bracket_the_thresholds(how):
 
 
 @needs_lammps
-def test_lammps_is_drawn_and_told(tmp_path):
+def test_lammps_takes_every_study(tmp_path):
     settings = {"material": "q-S", "type": "BA", "a_eff": 60e-9, "seed": 0, "timestep_factor": 0.05}
     settings |= {"study": "rotation", "step": 1.2, "rotations": {"sudden": 0.5, "driven": 0.1}}
     rows = lammps.compute(settings)
@@ -328,70 +329,11 @@ def test_lammps_is_drawn_and_told(tmp_path):
     rows += rolling + lammps.compute({"study": "force", "material": "a-C", "pairs": [[2e-8, 5e-8]], "points": 11})
     write_table(tmp_path / "a.nc", rows, lammps.KIND, {})
     table = read_tables([tmp_path / "a.nc"], lammps.KIND)
-    found = show_lammps.thresholds(table)
-    assert len(found) == len(lammps.COMPARISONS) * len(lammps.MARKS)
-    ratios = [show_lammps.middle(row["LAMMPS"]) / show_lammps.middle(row["ratd"]) for row in found]
-    assert np.nanmax(np.abs(np.log(ratios))) < np.log(1.2) * 1.01  # one step of omega
-    assert len(show_lammps.draw(table).axes) == 4
-    text = show_lammps.tell(table)
-    assert "| a-C | 1 | 1.000000 | 1.000000 |" in text
-    assert all(difference in text for difference in peer_lammps.DIFFERENCES)
-
-
-def test_thresholds_after_half_of_the_time_are_counted_once():
-    """ratd stands beside both frames of LAMMPS, with the same threshold."""
-    never = (np.nan, np.nan)
-    grain = {"type": "BA", "a_eff": 1e-7, "seed": 0, "mark": "first loss"}
-    codes = [("sudden", "LAMMPS"), ("sudden", lammps.TURNING), ("driven", lammps.TURNING)]
-    end = [grain | {"start": start, "code": code, "ratd": (1.0, 4.0), "LAMMPS": (4.0, 4.0)} for start, code in codes]
-    half = [
-        row | {"ratd": (4.0, 4.0), "LAMMPS": when} for row, when in zip(end, [(4.0, 4.0), never, never], strict=True)
-    ]
-    assert show_lammps._after_half(end, half) == (
-        "Of 3 thresholds of sudden starts 1 are the same after half of the time, 1 higher then (by up to 2.00 times), "
-        "and 1 only reached later."
-    )
-
-
-def test_thresholds_that_lie_apart_are_told_with_the_mass_that_is_left():
-    """One code loses a little more than a quarter at once and the other a little less, which comes as one piece."""
-    tried = [1.0, 1.1, 1.21, 2.0, 2.2]
-    left = {"ratd": [1.0, 0.74, 0.77, 0.77, 0.5], lammps.TURNING: [1.0, 0.77, 0.77, 0.77, 0.5]}
-    table = pd.DataFrame(
-        [
-            {"study": "rotation", "path": "driven", "type": "BA", "a_eff": 2e-7, "seed": 3, "cut_bound": 1.0}
-            | {"code": code, "omega": omega, "mass_left": mass}
-            for code, masses in left.items()
-            for omega, mass in zip(tried, masses, strict=True)
-        ]
-    )
-    (row,) = show_lammps.farthest_apart(table)  # the first loss is the same
-    assert (row["mark"], row["omega"]) == ("25 % of the mass", 1.1)
-    assert row["ratio"] == pytest.approx(np.sqrt(2.0 * 2.2 / (1.0 * 1.1)))
-    assert (row["ratd_left"], row["LAMMPS_left"]) == (0.74, 0.77)
-    assert "| BA 200 nm, seed 3 | 25 % of the mass | 2.00 | 1.1 | 0.740 | 0.770 |" in "\n".join(
-        show_lammps._apart(table)
-    )
-    assert show_lammps._apart(table[table["code"] == "none"]) == []
-
-
-def test_elastic_rolling_is_set_beside_the_same_grains_with_the_limit():
-    def runs(study, code, seed, holds):  # whole up to `holds` of the omega that are tried
-        grain = {"type": "BA", "a_eff": 1e-7, "seed": seed, "cut_bound": 1.0, "study": study, "path": "driven"}
-        return [grain | {"code": code, "omega": 2.0**k, "mass_left": 1.0 if k <= holds else 0.9} for k in range(6)]
-
-    elastic = lammps.ELASTIC_ROLLING
-    table = pd.DataFrame(
-        runs("rotation", "ratd", 0, 2) + runs("rotation", lammps.TURNING, 0, 1)
-        + runs(elastic, "ratd", 0, 3) + runs(elastic, lammps.TURNING, 0, 3)
-        + runs("rotation", "ratd", 1, 2) + runs("rotation", lammps.TURNING, 1, 2)
-    )  # fmt: skip
-    (row,) = show_lammps.elastic_rolling(table).to_dict("records")
-    assert (row["seed"], row["mark"]) == (0, "first loss")
-    assert [row[name] for name in ("with", "without", "ratd", "LAMMPS")] == pytest.approx([0.5, 1.0, 2.0, 4.0])
-    text = "\n".join(show_lammps._elastic_rolling(table))
-    assert "| first loss | with its limit | 1 | 0.5" in text and "| first loss | without | 1 | 1" in text
-    assert show_lammps._elastic_rolling(table[table["study"] == "rotation"]) == []
+    assert (table["study"] == "force").sum() >= 11
+    turned = table[table["study"] == "rotation"]
+    assert set(zip(turned["path"], turned["code"], strict=True)) == {
+        (path, code) for path, code in [("sudden", "ratd"), ("driven", "ratd"), *lammps.COMPARISONS]
+    }
 
 
 def test_plan_of_lammps():
