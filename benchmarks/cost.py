@@ -28,8 +28,9 @@ from ratd import grow, spin_up
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import InputError
 from ratd.base.units import NM
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import FIRST_LOSS, relax
+from ratd.experiments.spin_up.run import FIRST_LOSS
 from ratd.experiments.spin_up.same_grains import first_step
 from ratd.experiments.spin_up.solid import solid_omega
 

@@ -1,37 +1,44 @@
-"""The engine timed as a spin-up uses it: contacts, limits, damping, turning frame, search for contacts, breaking."""
+"""The engine timed as a run uses it: contacts, limits, damping, drive, search for contacts, breaking."""
 
 import time
 from typing import NamedTuple
 
-import numpy as np
-from ratd.engine.advance import FULL, STEPS_DONE, advance
-
-from ratd.drives.rotating import Drive, make_drive
-from ratd.engine.contacts import update_contact_rates
-from ratd.engine.fragments import find_fragments
-from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, OMEGA, STEPS, TIME
-from ratd.engine.state import State, new_state, with_room
+from ratd.drives.free import Free, free
+from ratd.drives.rotating import OMEGA, Rotating, rotating
+from ratd.drives.squeezing import Squeezing, squeezing
+from ratd.engine.layout import CONTACTS, DT, STEPS, TIME
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import State, new_state
+from ratd.engine.step import STEPS_DONE, run, until
+from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import TIMESTEP_FACTOR, relax
+from ratd.experiments.spin_up.run import TIMESTEP_FACTOR
+from ratd.geometry.box import Open, Periodic, open_space, periodic
+from ratd.laws import dmt, jkr
 
 EPSILON = 1e-9
 """So small that omega stays as it is however long the measurement: ten monomers make a microsecond in a second."""
+SHRINKING = -1.0
+"""Rate [1/s] of the box, at which nothing happens in the microseconds of a measurement."""
+INTEGRATOR = leapfrog(timestep_factor=TIMESTEP_FACTOR)
 
 
-class Turning(NamedTuple):
-    """An aggregate in its turning frame.
+class Body(NamedTuple):
+    """An aggregate, and what moves it.
 
     Attributes
     ----------
     state : ratd.engine.state.State
-    drive : ratd.drives.rotating.Drive
+    law, drive, box : parts of the engine
     omega : float
         Angular velocity at the start [rad/s].
     """
 
     state: State
-    drive: Drive
-    omega: float
+    law: NamedTuple
+    drive: Rotating | Squeezing | Free
+    box: Open | Periodic
+    omega: float = 0.0
 
     @property
     def contacts(self):
@@ -63,22 +70,36 @@ def turning(grain, part, *, relaxed=True):
 
     Returns
     -------
-    Turning
+    Body
     """
+    law, box = jkr(), open_space()
     if relaxed:
-        state = relax(grain, timestep_factor=TIMESTEP_FACTOR)
+        state = relax(grain, law=law, timestep_factor=TIMESTEP_FACTOR)
     else:
-        state = new_state(grain.position, grain.radius, grain.material, grain.contacts, timestep_factor=TIMESTEP_FACTOR)
-    update_contact_rates(state, TIMESTEP_FACTOR, True)
-    state.scalar[DT_DRIFT] = state.scalar[DT]
-    find_fragments(state)
+        state = _as_grown(grain, law, box)
     omega_1 = cut_bound(grain)
     # the exponential law is linear for so small a rate: start in the middle of it
     acceleration = EPSILON * omega_1**2
-    drive = make_drive("prescribed", omega_1=omega_1, angular_acceleration=acceleration)
+    drive = rotating("prescribed", omega_1=omega_1, angular_acceleration=acceleration)
     state.scalar[TIME] = part * omega_1 / acceleration
-    state.scalar[OMEGA] = part * omega_1
-    return Turning(state, drive, part * omega_1)
+    state.drive[OMEGA] = part * omega_1
+    return Body(state, law, drive, box, part * omega_1)
+
+
+def boxed(grain):
+    """A grain at rest in a periodic box that shrinks at a rate that changes nothing, as a `Body`."""
+    law, box = jkr(), periodic(4.0 * grain.enclosing_radius, SHRINKING)
+    return Body(_as_grown(grain, law, box), law, squeezing(), box)
+
+
+def other_law(grain):
+    """A grain at rest with the law of Derjaguin, Muller & Toporov and friction of limited force, as a `Body`."""
+    law, box = dmt(), open_space()
+    return Body(relax(grain, law=law, timestep_factor=TIMESTEP_FACTOR), law, free(), box)
+
+
+def _as_grown(grain, law, box):
+    return new_state(grain.position, grain.radius, grain.material, grain.contacts, law, box, INTEGRATOR)
 
 
 def timed(body, steps):
@@ -86,25 +107,20 @@ def timed(body, steps):
 
     Parameters
     ----------
-    body : Turning
+    body : Body
     steps : int
 
     Returns
     -------
-    body : Turning
+    body : Body
         Its arrays are the old ones, changed, or larger ones.
     seconds : float
         Processor time [s].
     """
-    state = body.state
-    goal = int(state.counter[STEPS]) + steps
-    code = FULL
+    goal = until(steps=body.state.counter[STEPS] + steps)
     start = time.process_time()
-    while code == FULL:
-        code = advance(state, body.drive, np.inf, goal, -1, TIMESTEP_FACTOR, True)
-        if code == FULL:
-            state = with_room(state, 2 * len(state.pair_i))
+    state, code = run(body.state, body.law, body.drive, body.box, INTEGRATOR, goal)
     seconds = time.process_time() - start
     if code != STEPS_DONE:
-        raise RuntimeError(f"the engine returned {code} after {state.counter[STEPS]} of {goal} steps")
+        raise RuntimeError(f"the engine returned {code} after {state.counter[STEPS]} of {goal.steps} steps")
     return body._replace(state=state), seconds

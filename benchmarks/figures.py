@@ -16,7 +16,8 @@ def draw_kernel(data, small, path):
     left, right = figure.subplots(1, 2, width_ratios=(3, 2))
     cases = list(data.groupby(["aggregate", "motion"], sort=False))
     for place, (_, case) in enumerate(cases):
-        for code, colour, marker, shift in (("ratd", BLUE, "o", -0.12), ("LAMMPS", ORANGE, "s", 0.12)):
+        codes = (("ratd", BLUE, "o", -0.12), ("before", GREY, "^", 0.0), ("LAMMPS", ORANGE, "s", 0.12))
+        for code, colour, marker, shift in codes:
             y = case.loc[case["code"] == code, "ns_per_contact_step"]
             if len(y):
                 x = np.full(len(y), place + shift)

@@ -1,10 +1,16 @@
-"""Part (a): ns per contact and step beside LAMMPS, alternately on one core, and us per step of ten monomers."""
+"""Part (a): ns per contact and step, alternately on one core with LAMMPS and with another checkout of ratd.
+
+Aggregates at rest and slowly turning; large ones beside smaller ones; another law, a box; us per step of ten monomers.
+"""
 
 from benchmarks import engine, grains, peer, tables
 
 MOTIONS = {"at rest": 0.0, "slowly turning": 0.2}
 """Angular velocity in units of the bound at which the aggregate must break."""
+COMBINATIONS = {"JKR, periodic box": engine.boxed, "DMT with friction": engine.other_law}
 TYPES = ("BAM2", "BA")
+NUMBERS = (3000, 30_000)
+"""Monomers of aggregates that are compared by their number."""
 SMALL = 10
 SEED = 0
 
@@ -23,8 +29,8 @@ def aggregates(n, files):
     return {kind: grains.grown(kind, n, SEED) for kind in TYPES}
 
 
-def measure(out, *, pairs, steps, monomers, small_steps, files, program, about, say):
-    """Measure and write ``kernel.csv`` and ``small.csv``.
+def measure(out, *, pairs, steps, monomers, numbers, small_steps, files, program, before, about, say):
+    """Measure and write ``kernel.csv``, ``combinations.csv`` and ``small.csv``.
 
     Parameters
     ----------
@@ -36,60 +42,91 @@ def measure(out, *, pairs, steps, monomers, small_steps, files, program, about, 
         Steps of each run, and of each run with ten monomers.
     monomers : int
         Monomers of the aggregates that are grown.
+    numbers : sequence of int
+        Monomers of those that are compared by their number; they make as many updates of contacts, hence fewer steps.
     files : list of pathlib.Path
         Aggregates to read instead.
     program : str or None
         LAMMPS.
+    before : benchmarks.before.Before or None
+        Another checkout of ratd.
     about : dict
         Columns that each row gets: the machine and the versions.
     say : callable
         Told how far it is.
     """
-    rows = []
+    rows, others = [], []
     for name, grain in aggregates(monomers, files).items():
-        classes = None
         for motion, part in MOTIONS.items():
-            body, _ = engine.timed(engine.turning(grain, part), steps // 10)  # also compiles
-            if program and classes is None:
-                classes = peer.best_classes(program, grain, timestep=body.timestep, steps=min(steps, peer.TRIAL_STEPS))
-            for pair in range(pairs):
-                before = body.contacts
-                body, seconds = engine.timed(body, steps)
-                rows.append(
-                    _row(name, motion, grain, "ratd", "", 0, pair, steps, before, body.contacts, seconds) | about
-                )
-                if program:
-                    timing = peer.run(
-                        program, grain, omega=body.omega, timestep=body.timestep, steps=steps, warm=steps // 10,
-                        classes=classes,
-                    )  # fmt: skip
-                    rows.append(
-                        _row(
-                            name, motion, grain, "LAMMPS", timing.version, classes, pair, steps,
-                            timing.contacts_before, timing.contacts, timing.seconds,
-                        ) | about
-                    )  # fmt: skip
-                latest = rows[-1 - bool(program) :]
-                latest = ", ".join(f"{row['code']} {row['ns_per_contact_step']:.1f}" for row in latest)
-                say(f"kernel: {name} {motion}, pair {pair + 1} of {pairs}: {latest} ns per contact and step")
-    tables.write(out / "kernel.csv", rows)
+            peers = [_other_ratd(before, grain, part, steps)] if before else []
+            body = engine.turning(grain, part)
+            if program:
+                peers.append(_lammps(program, grain, body, steps))
+            rows += _alternate(name, motion, grain, body, peers, pairs, steps, say)
+        for motion, make in COMBINATIONS.items():
+            others += _alternate(name, motion, grain, make(grain), [], pairs, steps, say)
+    tables.write(out / "kernel.csv", [row | about for row in rows])
+
+    for n in numbers:
+        for kind in TYPES:
+            grain, fewer = grains.grown(kind, n, SEED), max(100, steps * monomers // n)
+            part = MOTIONS["slowly turning"]
+            peers = [_other_ratd(before, grain, part, fewer, relaxed=False)] if before else []
+            body = engine.turning(grain, part, relaxed=False)
+            others += _alternate(f"{kind} of {n}", "slowly turning", grain, body, peers, pairs, fewer, say)
+    tables.write(out / "combinations.csv", [row | about for row in others])
 
     rows = []
     for kind in TYPES:
         grain = grains.grown(kind, SMALL, SEED)
         for motion, part in MOTIONS.items():
-            body, _ = engine.timed(engine.turning(grain, part), small_steps // 10)
-            for pair in range(pairs):
-                before = body.contacts
-                body, seconds = engine.timed(body, small_steps)
-                rows.append(
-                    _row(kind, motion, grain, "ratd", "", 0, pair, small_steps, before, body.contacts, seconds) | about
-                )
-            say(f"kernel: {SMALL} monomers, {kind} {motion}: {rows[-1]['us_per_step']:.2f} us per step")
-    tables.write(out / "small.csv", rows)
+            body = engine.turning(grain, part)
+            rows += _alternate(kind, motion, grain, body, [], pairs, small_steps, say)
+    tables.write(out / "small.csv", [row | about for row in rows])
 
 
-def _row(name, motion, grain, code, version, classes, pair, steps, before, contacts, seconds):
+def _alternate(name, motion, grain, body, peers, pairs, steps, say):
+    """Rows of a body of ratd and of its peers, timed by turns, list of dict.
+
+    A peer is its name and a callable that makes one run and gives the version, the number of size classes, the seconds,
+    and the contacts before and after.
+    """
+    body, _ = engine.timed(body, max(1, steps // 10))  # also compiles
+    rows = []
+    for pair in range(pairs):
+        held = body.contacts
+        body, seconds = engine.timed(body, steps)
+        found = [("ratd", "", 0, seconds, held, body.contacts)] + [(code, *go()) for code, go in peers]
+        rows += [_row(name, motion, grain, pair, steps, *timing) for timing in found]
+        latest = ", ".join(f"{row['code']} {row['ns_per_contact_step']:.1f}" for row in rows[-len(found) :])
+        say(f"kernel: {name} {motion}, pair {pair + 1} of {pairs}: {latest} ns per contact and step")
+    return rows
+
+
+def _other_ratd(before, grain, part, steps, relaxed=True):
+    contacts = before.turn(grain, part, relaxed=relaxed)
+    before.go_on(max(1, steps // 10))
+
+    def go():
+        seconds, now = before.go_on(steps)
+        return before.version, 0, seconds, contacts, now
+
+    return "before", go
+
+
+def _lammps(program, grain, body, steps):
+    classes = peer.best_classes(program, grain, timestep=body.timestep, steps=min(steps, peer.TRIAL_STEPS))
+
+    def go():
+        timing = peer.run(
+            program, grain, omega=body.omega, timestep=body.timestep, steps=steps, warm=steps // 10, classes=classes
+        )
+        return timing.version, classes, timing.seconds, timing.contacts_before, timing.contacts
+
+    return "LAMMPS", go
+
+
+def _row(name, motion, grain, pair, steps, code, version, classes, seconds, before, contacts):
     return {
         "aggregate": name,
         "motion": motion,

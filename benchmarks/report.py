@@ -98,24 +98,9 @@ def _goals_section(out):
 
 
 def _kernel(out):
-    data, small = frame(out, "kernel"), frame(out, "small")
+    data, small, others = frame(out, "kernel"), frame(out, "small"), frame(out, "combinations")
     if data is None or small is None:
         return ""
-    rows = []
-    for (name, motion), case in data.groupby(["aggregate", "motion"], sort=False):
-        ratio = pair_ratios(case)
-        code = {key: part for key, part in case.groupby("code")}
-        own = code["ratd"]
-        peer = code.get("LAMMPS")
-        rows.append(
-            [
-                name, motion, case["monomers"].iloc[0], own["contacts"].iloc[-1], len(own),
-                _spread(own["ns_per_contact_step"]),
-                "-" if peer is None else _spread(peer["ns_per_contact_step"]),
-                "-" if peer is None else peer["contacts"].iloc[-1],
-                "-" if peer is None else _spread(ratio),
-            ]
-        )  # fmt: skip
     peers = data[data["code"] == "LAMMPS"]
     if len(peers):
         text = [
@@ -134,14 +119,36 @@ def _kernel(out):
         for (kind, motion), case in small.groupby(["aggregate", "motion"], sort=False)
     ]
     draw_kernel(data, small, out / "kernel.png")
-    head = ["aggregate", "motion", "monomers", "contacts", "pairs", "ratd [ns]", "LAMMPS [ns]", "its contacts", "ratio"]
+    more = [] if others is None else ["### Large aggregates, another law, a box\n", _codes(others)]
     return "\n".join(
         [
-            "## Kernel beside LAMMPS: ns per contact and step\n", _where(data), about + "\n", table(head, rows),
+            "## Kernel: ns per contact and step\n", _where(data), about + "\n", _codes(data), *more,
             f"### {small['monomers'].iloc[0]} monomers: microseconds per step, all included\n",
             table(["type", "motion", "contacts", "runs", "us per step"], tiny), "![kernel](kernel.png)\n",
         ]
     )  # fmt: skip
+
+
+def _codes(data):
+    """A table with a row a case, and columns for the other codes that were timed."""
+    codes = [code for code in ("before", "LAMMPS") if code in set(data["code"])]
+    rows = []
+    for (name, motion), case in data.groupby(["aggregate", "motion"], sort=False):
+        of = {code: part for code, part in case.groupby("code")}
+        own = of["ratd"]
+        row = [name, motion, case["monomers"].iloc[0], own["contacts"].iloc[-1], len(own)]
+        row.append(_spread(own["ns_per_contact_step"]))
+        for code in codes:
+            if code in of:
+                row += [_spread(of[code]["ns_per_contact_step"]), of[code]["contacts"].iloc[-1]]
+                row.append(_spread(pair_ratios(case, code), 2))
+            else:
+                row += ["-"] * 3
+        rows.append(row)
+    head = ["aggregate", "motion", "monomers", "contacts", "pairs", "ratd [ns]"]
+    for code in codes:
+        head += [f"{code} [ns]", "its contacts", f"{code} over ratd"]
+    return table(head, rows)
 
 
 def _cost(out):

@@ -38,10 +38,10 @@ def frame(out, name):
     return pd.read_csv(path, keep_default_na=True) if path.exists() else None
 
 
-def pair_ratios(case):
-    """LAMMPS over ratd for each pair of a case, (pairs,); empty without LAMMPS."""
+def pair_ratios(case, code="LAMMPS"):
+    """Another code over ratd for each pair of a case, (pairs,); empty without it."""
     both = case.pivot_table(index="pair", columns="code", values="ns_per_contact_step")
-    return (both["LAMMPS"] / both["ratd"]).to_numpy() if "LAMMPS" in both else np.empty(0)
+    return (both[code] / both["ratd"]).to_numpy() if code in both else np.empty(0)
 
 
 def projected_range(row):

@@ -83,3 +83,21 @@ def least_bridge_cut(load, contacts, strength):
         if label.max() == 1:
             least = min(least, cut(load, contacts, strength, label == 0))
     return least
+
+
+def close_images(position, radius, reach, edges):
+    """Every pair and every image that may be near: (i, j, n_x, n_y, n_z) with |x_i - x_j + n L| small.
+
+    Of a sphere and its own copies those whose first number that is not 0 is positive.
+    """
+    found = set()
+    for i, j in itertools.combinations_with_replacement(range(len(radius)), 2):
+        d = position[i] - position[j]
+        home = -np.round(d / edges)
+        limit = radius[i] + radius[j] + reach
+        spans = [np.arange(-m, m + 1) for m in np.ceil(limit / edges).astype(int) + 1]
+        shifts = home + np.array(np.meshgrid(*spans)).reshape(3, -1).T
+        for n in shifts[np.linalg.norm(d + shifts * edges, axis=1) < limit].astype(int):
+            if i < j or tuple(n) > (0, 0, 0):
+                found.add((i, j, *map(int, n)))
+    return found

@@ -82,7 +82,8 @@ def pair_state(law, box, radii, materials, distance, normal, *, velocity=None, s
     """State of two spheres in contact, at this distance along the unit vector `normal` from the second to the first."""
     position = np.array([distance * normal, np.zeros(3)])
     state = new_state(
-        position, np.array(radii), materials, np.array([[0, 1]]), law, box, EXPLICIT, velocity=velocity, spin=spin, kind=kind
+        position, np.array(radii), materials, np.array([[0, 1]]), law, box, EXPLICIT,
+        velocity=velocity, spin=spin, kind=kind,
     )  # fmt: skip
     # the Z-curve may have changed the order
     assert state.pair_i[0] == 0 and state.pair_j[0] == 1

@@ -77,7 +77,7 @@ def test_literal_frame_lacks_torque_and_spin_terms():
 
 
 def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
-    """A free monomer at rest in the inertial frame: the explicit term drives it outwards (docs/model.md)."""
+    """A free monomer at rest in the inertial frame: the explicit term drives it outwards (docs/model/drives.md)."""
     speeds = {}
     for coriolis in ("explicit", "exact"):
         drive = rotating("literal", omega_1=1e8, epsilon=0.02, coriolis=coriolis)

@@ -36,7 +36,6 @@ def test_energy_of_a_collision(name):
     speed = 5.0
     run = collide(law, speed, balance=None, timestep_factor=0.03, **options)
     start = float(run.kinetic_translation[0])
-    print(name, np.abs(run.residual.values).max() / start, run.n_contacts.values)
     assert np.abs(run.residual.values).max() < share * start
     assert float(run.dissipated[-1].sum()) > 0.3 * start
     for name, length in (("momentum", 1.0), ("angular_momentum", speed * DURATION)):

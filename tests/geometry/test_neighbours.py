@@ -3,7 +3,7 @@ import pytest
 
 import naive_geometry as naive
 from ratd.base.jit import jit
-from ratd.geometry.neighbours import close_pairs, connected_components
+from ratd.geometry.neighbours import close_images, close_pairs, connected_components
 
 
 def spheres(n, extent, seed, shape="box"):
@@ -100,3 +100,33 @@ def test_components_are_counted_in_the_order_of_their_first_monomers():
 def test_a_long_chain_given_backwards_is_one_piece():
     pairs = np.stack([np.arange(9999, 0, -1), np.arange(9998, -1, -1)], axis=1)
     assert connected_components(10000, pairs).max() == 0
+
+
+@pytest.mark.parametrize("reach", [0.3, 0.0, -0.3])
+@pytest.mark.parametrize(("n", "ratio"), [(300, 1), (400, 10), (500, 50)])
+def test_radii_of_very_different_size(n, ratio, reach):
+    rng = np.random.default_rng(n)
+    radius = np.exp(rng.uniform(0, np.log(ratio), n))
+    position = rng.uniform(0, radius.mean() * 2.2 * n ** (1 / 3), (n, 3))
+    wanted = naive.close_pairs(position, radius, reach)
+    assert len(wanted) > 50
+    np.testing.assert_array_equal(close_pairs(position, radius, reach), wanted)
+
+
+@pytest.mark.parametrize("edge", [11.0, 3.1, 1.7])
+@pytest.mark.parametrize("ratio", [1, 50])
+def test_images_are_those_of_a_loop_over_all_copies(ratio, edge):
+    """Edges from many diameters to less than one, where a sphere meets its own copies and a pair meets many times."""
+    rng = np.random.default_rng(7)
+    n = 30
+    radius = np.exp(rng.uniform(0, np.log(ratio), n)) if ratio > 1 else np.ones(n)
+    radius /= radius.max()
+    edges = np.array([1.0, 1.1, 0.9]) * edge
+    position = rng.uniform(0, 1, (n, 3)) * edges + rng.integers(-3, 4, (n, 3)) * edges
+    found = close_images(position, radius, 0.2, tuple(edges))
+    rows = list(map(tuple, found.tolist()))
+    assert len(set(rows)) == len(rows)
+    assert [row[:2] for row in rows] == sorted(row[:2] for row in rows)
+    assert set(rows) == naive.close_images(position, radius, 0.2, edges)
+    if edge < 2.0:
+        assert any(i == j for i, j, *_ in rows) and len({row[:2] for row in rows}) < len(rows)

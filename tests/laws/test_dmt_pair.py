@@ -58,7 +58,6 @@ def test_speed_of_sticking(radius, wanted):
     for _ in range(8):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stick(radius, middle) else (low, middle)
-    print(radius, low, high)
     assert low == pytest.approx(wanted, rel=3e-3)
 
 

@@ -1,4 +1,4 @@
-"""Contact laws: table of docs/model.md, forces as derivatives of potentials, limits leave other modes alone."""
+"""Contact laws: table of docs/model/laws.md, forces as derivatives of potentials, limits leave other modes alone."""
 
 import math
 
@@ -115,11 +115,9 @@ def test_damping_ratios(name, ratios):
     for a, ratio in zip((10e-9, 41e-9, 100e-9), ratios, strict=True):
         r = a / 2
         r0 = equilibrium_contact_radius(r, material.surface_energy, material.reduced_modulus)
-        c = jkr.viscoelastic_damping(
-            r0, material.reduced_modulus, material.viscous_time / material.poisson_number**2
-        )
+        c = jkr.viscoelastic_damping(r0, material.reduced_modulus, material.viscous_time / material.poisson_number**2)
         m_red = 2 / 3 * math.pi * a**3 * material.density
-        # the table of docs/model.md is rounded to its last digit
+        # the table of docs/model/laws.md is rounded to its last digit
         assert c / (2 * math.sqrt(1.2 * material.reduced_modulus * r0 * m_red)) == pytest.approx(ratio, rel=0.12)
 
 

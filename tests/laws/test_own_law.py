@@ -140,8 +140,6 @@ def test_what_a_law_lacks_is_told():
     """Spring has no radius of the contact area."""
     law = Spring(1.0)
     touching = np.array([[0.0, 0, 0], [1.9e-7, 0, 0]])
-    state = new_state(
-        touching, np.full(2, 1e-7), MATERIALS["ice"], np.array([[0, 1]]), law, open_space(), leapfrog()
-    )
+    state = new_state(touching, np.full(2, 1e-7), MATERIALS["ice"], np.array([[0, 1]]), law, open_space(), leapfrog())
     with pytest.raises(TypingError, match="Spring has no method contact_radius"):
         total_stress(state, law)

@@ -93,9 +93,9 @@ def evolve(
         How the normal damping is integrated (`ratd.engine.leapfrog`).
     drag : float
         Rate [1/s] at which velocities and spins decay, to bring an aggregate to rest in open space.
-    contacts : (k, 2) array_like, optional
+    contacts : (k, 2) or (k, 5) array_like, optional
         Pairs in contact at the start, which then hold the force that belongs to their overlap; all that overlap when
-        not given.
+        not given. In a periodic box with their images, three integers n: X_i - X_j + n L is the difference.
     records : int
         Number of records after the start, evenly spaced in time.
     balance : float or None
@@ -127,9 +127,13 @@ def evolve(
     in_box = has_images(box)
     if in_box and drag:
         raise InputError("drag is for open space; in a periodic box leave it out.")
-    for name, value in (("duration", duration), ("records", records)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{name} is {value!r}; it must be a number above 0.")
+    if not (_is_number(duration) and duration > 0):
+        raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
+    if not (_is_number(drag) and drag >= 0):
+        raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
+    if not (_is_number(records) and records >= 1 and records == int(records)):
+        raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
+    contacts = None if contacts is None else _contacts(contacts, len(radius))
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
@@ -182,6 +186,27 @@ def _arrays(position, radius, velocity, spin):
     if vectors[0] is None:
         raise InputError("position is None; it must be (n, 3) finite numbers in m.")
     return vectors[0], radius, vectors[1], vectors[2]
+
+
+def _is_number(value):
+    return isinstance(value, int | float | np.number) and np.isfinite(value)
+
+
+def _contacts(contacts, n):
+    """Pairs in contact as an int array, checked: (k, 2), or (k, 5) with images."""
+    try:
+        pairs = np.array(contacts)
+        pairs = pairs.reshape(0, 2).astype(int) if pairs.size == 0 else pairs
+    except ValueError:
+        pairs = np.zeros(0)
+    good = pairs.ndim == 2 and pairs.shape[1] in (2, 5) and np.issubdtype(pairs.dtype, np.integer)
+    if good and len(pairs):
+        low, high = pairs[:, :2].min(), pairs[:, :2].max()
+        itself = pairs[:, 0] == pairs[:, 1]
+        good = low >= 0 and high < n and (pairs[itself, 2:] != 0).any(axis=1).all()
+    if not good:
+        raise InputError(f"contacts must be pairs (k, 2) of different numbers of spheres from 0 to {n - 1}.")
+    return pairs.astype(np.int64)
 
 
 def _materials(material, n):

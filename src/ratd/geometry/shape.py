@@ -394,7 +394,7 @@ def spin_share(radius, density, moment_1):
     Returns
     -------
     float
-        sum(2/5 m_i a_i^2)/I_1 (docs/model.md, The two drives).
+        sum(2/5 m_i a_i^2)/I_1 (docs/model/drives.md, literal).
     """
     return float(np.sum(8.0 / 15.0 * np.pi * density * np.asarray(radius) ** 5) / moment_1)
 

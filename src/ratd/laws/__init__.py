@@ -1,7 +1,7 @@
 """Contact laws: what two spheres do to each other.
 
 A law is a NamedTuple marked by `ratd.base.parts.part`. Its fields are its options; its methods, compiled together with
-the time loop, are (``at`` is where the fields of a contact begin, see `ratd.engine.layout`):
+the time loop, are (``at`` is where the fields of a contact begin, see `ratd.laws.contact_fields`):
 
 n_fields()
     Number of fields of a contact: `COMMON` and those of the law, taken from `law_fields`.
@@ -27,6 +27,14 @@ stiffness(contact, at)
 
 What a law does not have (an integrator asks for `stiffness`, stresses for `contact_radius`) is an error when it is
 compiled. `tests/laws/test_own_law.py` adds a law in one file. A contact begins when two surfaces touch.
+
+jkr_with_springs         the law of Johnson, Kendall & Roberts with springs of limited displacement: `jkr`
+dmt_with_friction        the law of Derjaguin, Muller & Toporov with friction of limited force: `dmt`
+johnson_kendall_roberts  formulae of the normal contact of the first
+tangential               formulae of its sliding, rolling and twisting
+material_pair            the constants of a contact between two materials
+contact_constants        constants of an adhesive contact at rest
+contact_fields           where each number of a contact stands
 """
 
 from importlib import import_module

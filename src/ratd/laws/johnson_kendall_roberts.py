@@ -43,7 +43,7 @@ def contact_state(compression, s):
 
     Notes
     -----
-    docs/model.md; Eqs. 9, 12 and 23 of the paper.
+    docs/model/laws.md; Eqs. 9, 12 and 23 of the paper.
     """
     s2 = s * s
     s = s - (3.0 * s2 * s2 - 2.0 * s - compression) * rough_reciprocal(max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR))
@@ -93,7 +93,7 @@ def viscoelastic_damping(equilibrium_contact_radius, reduced_modulus, viscosity)
     """Viscoelastic damping coefficient [kg s-1] at equilibrium: c = 2 E*/nu^2 r0 T_vis, Eq. 22.
 
     The damping force is c x d(delta)/dt along n_c: it pushes while the spheres approach. Eq. 29 as printed leaves
-    it out; it belongs there (docs/model.md).
+    it out; it belongs there (docs/model/laws.md).
 
     Parameters
     ----------
@@ -136,12 +136,12 @@ def contact_time(reduced_mass, reduced_radius, reduced_modulus, surface_energy):
 
 
 def compression_of(s):
-    """delta/delta_0 = 3 s^4 - 2 s (docs/model.md, Normal force)."""
+    """delta/delta_0 = 3 s^4 - 2 s (docs/model/laws.md)."""
     return 3.0 * s**4 - 2.0 * s
 
 
 def equilibrium_stiffness(pull_off_force, equilibrium_compression):
-    """-dF/d(delta) [N m-1] at equilibrium: 1.2 F_C/delta_0, which equals 1.2 E* r0 (docs/model.md, Normal force)."""
+    """-dF/d(delta) [N m-1] at equilibrium: 1.2 F_C/delta_0, which equals 1.2 E* r0 (docs/model/laws.md)."""
     return 1.2 * pull_off_force / equilibrium_compression
 
 

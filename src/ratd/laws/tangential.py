@@ -27,7 +27,7 @@ def sliding_stiffness(equilibrium_contact_radius, sliding_modulus):
 
 @jit
 def sliding_limit(equilibrium_contact_radius, poisson_number):
-    """zeta_c [m] = r0 (2 - nu)/(16 pi) (printed 1 - nu; docs/model.md)."""
+    """zeta_c [m] = r0 (2 - nu)/(16 pi) (printed 1 - nu; docs/model/laws.md)."""
     return equilibrium_contact_radius * (2.0 - poisson_number) / (16.0 * math.pi)
 
 
@@ -71,7 +71,7 @@ def sliding_displacement(a_i, nix, niy, niz, a_j, njx, njy, njz, ncx, ncy, ncz):
 
     Notes
     -----
-    docs/model.md. Eq. 14 is printed with signs that make it measure rolling.
+    docs/model/laws.md. Eq. 14 is printed with signs that make it measure rolling.
     """
     wx = a_i * nix - a_j * njx
     wy = a_i * niy - a_j * njy

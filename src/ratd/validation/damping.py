@@ -1,7 +1,7 @@
 """What the viscous time does to the marks of disruption: by how finely the damping is resolved, and by the rate.
 
-The implicit damping is weaker than Eq. 22 for light monomers, the more the longer the step (docs/model.md, The
-scheme); the explicit one is not, but lets long steps break down. A grain is spun up with several T_vis by both, with
+The implicit damping is weaker than Eq. 22 for light monomers, the more the longer the step (docs/model/engine.md,
+Damping); the explicit one is not, but lets long steps break down. A grain is spun up with several T_vis by both, with
 shorter and shorter steps; and, as what T_vis does goes with the rate too, at several epsilon.
 """
 

@@ -1,9 +1,9 @@
 """The literal drive: what the printed equations give, against the spin-up rate, the time step and the Coriolis term.
 
-The printed equations leave an aggregate at rest in the inertial frame but for two things (docs/model.md). The printed
-equation of the spins has no Euler term, which acts like an outer torque I_spin d omega/dt, where I_spin is the sum of
-the monomers' own moments of inertia. And an explicit Coriolis term, taken at the velocities half a step before, turns
-the aggregate backwards. `ratd.experiments.spin_up.solid.solid_omega` says where a solid grain parts under both.
+The printed equations leave an aggregate at rest in the inertial frame but for two things (docs/model/drives.md). The
+printed equation of the spins has no Euler term, which acts like an outer torque I_spin d omega/dt, where I_spin is the
+sum of the monomers' own moments of inertia. And an explicit Coriolis term, taken at the velocities half a step before,
+turns the aggregate backwards. `ratd.experiments.spin_up.solid.solid_omega` says where a solid grain parts under both.
 """
 
 import numpy as np

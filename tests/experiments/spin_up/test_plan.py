@@ -343,7 +343,7 @@ def test_figure9_may_have_sizes_of_its_own_for_the_literal_drive():
 
 
 def test_the_literal_paces_of_the_config_have_one_ratio():
-    """Only d omega/dt over the step counts (docs/model.md), so the ensemble and figure 9 are of one ratio."""
+    """Only d omega/dt over the step counts (docs/model/drives.md), so the ensemble and figure 9 are of one ratio."""
     config = load(*DEFAULT).config
     first, second = config["literal"], config["figures"]["figure9"]["literal"]
     ratio = first["angular_acceleration"] / first["timestep_factor"]

@@ -32,7 +32,7 @@ def pair(material, a_i, a_j):
 
 @pytest.mark.parametrize("material", ["a-C", "q-S", "co-S"])
 def test_two_equal_monomers_part_where_they_must(material):
-    """omega = sqrt(3 pi gamma/(2 m)), docs/model.md, within 1 % at slow spin-up."""
+    """omega = sqrt(3 pi gamma/(2 m)), docs/model/drives.md, within 1 % at slow spin-up."""
     a = 30e-9
     run = spin_up(pair(material, a, a), epsilon=0.002)
     material = MATERIALS[material]

@@ -1,11 +1,11 @@
 """The one free number of the literal drive: d omega/dt at the printed step factor, fixed on the onset of mass loss.
 
 The printed equations with the Coriolis force at the old velocity feed in energy at a rate ~ omega^2 dt, so that a grain
-comes apart at an omega that depends on d omega/dt (docs/model.md). The paper gives no d omega/dt that could be used
-("hours" would be 1e16 steps), but it shows where the mass of one cell starts to fall (Fig. 4). Which d omega/dt gives
-just that is found by a fit over several of them. Only d omega/dt over the step counts, so a run with another step than
-the printed one stands for one with the printed step and d omega/dt in proportion; where there are both, `step_ratios`
-tells how well they agree.
+comes apart at an omega that depends on d omega/dt (docs/model/drives.md). The paper gives no d omega/dt that could be
+used ("hours" would be 1e16 steps), but it shows where the mass of one cell starts to fall (Fig. 4). Which d omega/dt
+gives just that is found by a fit over several of them. Only d omega/dt over the step counts, so a run with another step
+than the printed one stands for one with the printed step and d omega/dt in proportion; where there are both,
+`step_ratios` tells how well they agree.
 """
 
 import numpy as np

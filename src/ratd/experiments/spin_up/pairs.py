@@ -42,7 +42,7 @@ def holding_omega(pull_off, reduced_mass, distance):
 def force_controlled_omega(a_1, a_2, material):
     """omega [rad/s] at which the centrifugal force on a pair of radii [m] is the pull-off force.
 
-    m_red omega^2 (a_1 + a_2) = 3 pi gamma R (docs/model.md); for equal monomers sqrt(3 pi gamma/(2 m)).
+    m_red omega^2 (a_1 + a_2) = 3 pi gamma R (docs/model/drives.md); for equal monomers sqrt(3 pi gamma/(2 m)).
     """
     m_1, m_2 = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_1, a_2))
     force = pull_off_force(reduced_radius(a_1, a_2), material.surface_energy)

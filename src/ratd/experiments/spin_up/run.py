@@ -28,7 +28,7 @@ slow spin-up and a short step, larger BAM1 grains farther above it (docs/validat
 the least epsilon."""
 FIRST_LOSS = 0.7
 """Part of the cut bound from which on epsilon is constant. BA grains mostly lose their first monomers above it, BAM
-grains often below, where the spin-up is faster than epsilon (docs/model.md, The scheme)."""
+grains often below, where the spin-up is faster than epsilon (docs/model/drives.md, The law omega(t))."""
 CHECKPOINT_INTERVAL = 60.0
 """Wall time [s] between two checkpoints."""
 

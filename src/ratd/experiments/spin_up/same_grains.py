@@ -57,7 +57,7 @@ def first_step(grain, timestep_factor):
 def steps_to(grain, reach, angular_acceleration, timestep_factor):
     """Number of steps dt in which Eq. 24 takes a grain to omega = reach (d omega/dt / dt)^(1/3), dt being the first.
 
-    With the drive literal grains come apart at a certain `reach` (docs/model.md, The two drives).
+    With the drive literal grains come apart at a certain `reach` (docs/model/drives.md, literal).
     """
     dt = first_step(grain, timestep_factor)
     return int(reach * (angular_acceleration / dt) ** (1.0 / 3.0) / angular_acceleration / dt)

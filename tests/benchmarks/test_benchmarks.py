@@ -12,7 +12,7 @@ import pytest
 
 from ratd.base.errors import FileError
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -38,9 +38,9 @@ def rows(path):
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    """What the quick run of everything writes, without LAMMPS."""
+    """What the quick run of everything writes, without LAMMPS, and with this checkout beside itself."""
     out = tmp_path_factory.mktemp("benchmarks")
-    done = command("--quick", "--no-lammps", "--out", out)
+    done = command("--quick", "--no-lammps", "--before", ROOT, "--out", out)
     assert done.returncode == 0, done.stderr
     return out
 
@@ -49,12 +49,21 @@ def test_kernel_has_every_case_and_its_numbers_agree(results):
     table = rows(results / "kernel.csv")
     cases = [(row["aggregate"], row["motion"], row["code"], row["pair"]) for row in table]
     assert cases == [
-        (kind, motion, "ratd", pair)
+        (kind, motion, code, pair)
         for kind in ("BAM2", "BA")
         for motion in ("at rest", "slowly turning")
         for pair in ("0", "1")
+        for code in ("ratd", "before")
     ]
-    for row in table:
+    others = rows(results / "combinations.csv")
+    assert {(row["motion"], row["code"]) for row in others} == {
+        ("JKR, periodic box", "ratd"), ("DMT with friction", "ratd"),
+        ("slowly turning", "ratd"), ("slowly turning", "before"),
+    }  # fmt: skip
+    assert {row["aggregate"] for row in others} == {"BA", "BAM2"} | {
+        f"{kind} of {n}" for kind in ("BA", "BAM2") for n in (60, 120)
+    }
+    for row in table + others:
         per_step = float(row["seconds"]) / int(row["steps"])
         assert math.isclose(float(row["us_per_step"]), per_step * 1e6, rel_tol=1e-4)
         assert math.isclose(float(row["ns_per_contact_step"]), per_step / int(row["contacts"]) * 1e9, rel_tol=1e-4)
@@ -110,9 +119,33 @@ def test_profile_divides_all_steps_among_its_bands(tmp_path):
     assert "### Where the steps go" in (tmp_path / "README.md").read_text()
 
 
+def test_a_checkout_agrees_with_itself():
+    done = command("agreement", "--quick", "--before", ROOT, "--out", "unused")
+    assert done.returncode == 0, done.stderr
+    assert "| steps | 3 | 3 | 1 | 1 | 0 |" in done.stdout
+
+
+def test_agreement_is_that_of_the_grains_that_have_a_mark_in_both(benchmarks):
+    from benchmarks import agreement
+
+    here = [{"grain": k, **dict.fromkeys(agreement.QUANTITIES, float(k + 1))} for k in range(3)]
+    there = [row | {"omega_mass_75": np.nan if row["grain"] == 0 else row["omega_mass_75"] / 1.1} for row in here]
+    found = {row[""]: row for row in agreement.compare(here, there)}
+    assert (found["25 % of the mass"]["grains"], found["25 % of the mass"]["the same"]) == (2, 0)
+    assert found["25 % of the mass"]["median ratio"] == pytest.approx(1.1)
+    assert (found["steps"]["the same"], found["steps"]["scatter [%]"]) == (3, 0.0)
+    with pytest.raises(RuntimeError, match="do not grow the same grains"):
+        agreement.compare(here, there[::-1])
+    cells = agreement.cases(18)
+    assert len(set(cells)) == 18 and {(kind, material) for kind, material, _, seed in cells if seed == 1} == {
+        (kind, material) for kind in agreement.TYPES for material in agreement.MATERIALS
+    }
+
+
 def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
-    from benchmarks import report
     from benchmarks.goals import goals
+
+    from benchmarks import report
 
     assert goals(tmp_path) == []
     (tmp_path / "pipeline.csv").write_text("size_nm,seconds_of_work,seconds_of_pipeline\n50,6,10\n100,30,30\n")
@@ -185,6 +218,8 @@ def test_time_that_is_up_is_told(tmp_path):
     [
         (["speed"], "part is 'speed'; allowed are kernel, cost, scaling"),
         (["kernel"], "--quick needs --out"),
+        (["kernel", "--out", "OUT", "--before", "nowhere"], "which is no checkout"),
+        (["agreement", "--out", "OUT"], "needs --before FOLDER"),
         (["kernel", "--out", "OUT", "--aggregate", "missing.txt"], "missing.txt: cannot be read"),
         (["kernel", "--out", "OUT", "--lammps", "no-such-program"], "no program that can be run"),
     ],

@@ -1,0 +1,191 @@
+"""`evolve` as a user meets it: what is refused, what comes back, in which order, after a kill, and free bodies."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments import evolve as module
+from ratd.experiments.evolve import RECORDS, evolve
+from ratd.geometry.box import periodic
+from ratd.laws import dmt, jkr
+from systems import clusters, tree
+
+A = 30e-9
+PAIR = np.array([[0.0, 0, 0], [59.95e-9, 0, 0]])
+GOOD = {"position": PAIR, "radius": [A, A], "material": "q-S", "duration": 1e-10, "records": 2}
+NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"radius": [A]}, r"position has the shape \(2, 3\); it must be \(1, 3\) finite numbers"),
+        ({"radius": [A, -A]}, "radius has the shape .* numbers above 0"),
+        ({"radius": [[A, A]]}, "radius has the shape"),
+        ({"radius": [], "position": np.zeros((0, 3))}, "n at least 1"),
+        ({"radius": [A, np.inf]}, "radius has the shape"),
+        ({"position": None}, "position is None"),
+        ({"position": NAN}, "position has the shape .* finite numbers"),
+        ({"position": PAIR[:, :2]}, r"position has the shape \(2, 2\)"),
+        ({"position": "far"}, "must be arrays of numbers"),
+        ({"velocity": NAN}, "velocity has the shape"),
+        ({"spin": [1.0, 2.0]}, r"spin has the shape \(2,\)"),
+        ({"material": "cheese"}, "The material is 'cheese'; allowed are"),
+        ({"material": ["q-S"]}, "material is a list of 1"),
+        ({"drag": 1e9, "box": periodic(1e-6)}, "drag is for open space"),
+        ({"drag": -1.0}, "drag is -1.0"),
+        ({"duration": 0.0}, "duration is 0.0; it must be a number above 0"),
+        ({"duration": np.nan}, "duration is nan"),
+        ({"duration": "long"}, "duration is 'long'"),
+        ({"records": 0}, "records is 0"),
+        ({"records": 2.5}, "records is 2.5; it must be a whole number"),
+        ({"timestep": -1e-12}, "timestep is -1e-12"),
+        ({"timestep_factor": 2.0}, "timestep_factor is 2.0"),
+        ({"damping": "none"}, "damping is 'none'; allowed are implicit, explicit"),
+        ({"contacts": [[0, 2]]}, r"contacts must be pairs \(k, 2\) .* from 0 to 1"),
+        ({"contacts": [[0, 0]]}, "contacts must be pairs"),
+        ({"contacts": [0, 1]}, "contacts must be pairs"),
+        ({"contacts": [[0.0, 1.0]]}, "contacts must be pairs"),
+        ({"position": [[0.0, 0, 0]], "radius": [A]}, "timestep is not given; a single sphere needs one"),
+    ],
+)
+def test_bad_input_is_refused_in_one_sentence(arguments, words):
+    with pytest.raises(InputError, match=words) as caught:
+        evolve(**GOOD | arguments)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("law", "arguments", "words"),
+    [
+        (jkr, {"damping": "strong"}, "damping is 'strong'; allowed are viscoelastic, constant, none"),
+        (jkr, {"friction": "velocity"}, "friction is 'velocity'; allowed are springs, none"),
+        (jkr, {"sliding_stiffness": 0.0}, "sliding_stiffness is 0.0; it must be a number above 0"),
+        (jkr, {"constant_damping": -1.0}, "constant_damping is -1.0"),
+        (dmt, {"friction": "springs"}, "friction is 'springs'; allowed are none, velocity, spring"),
+        (dmt, {"viscous_time": np.nan}, "viscous_time is nan; it must be a number of at least 0"),
+        (dmt, {"rolling_limit": -1.0}, "rolling_limit is -1.0"),
+    ],
+)
+def test_bad_options_of_laws_are_refused(law, arguments, words):
+    with pytest.raises(InputError, match=words):
+        law(**arguments)
+
+
+def run(**options):
+    """Two clusters that meet."""
+    position, radius, velocity = clusters(10.0)
+    return evolve(position, radius, velocity, **{"material": "q-S", "duration": 1e-8, "records": 8} | options)
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return run()
+
+
+def test_records(whole):
+    assert set(RECORDS) <= set(whole)
+    np.testing.assert_allclose(whole.time, np.linspace(0, 1e-8, 9), rtol=0, atol=2 * whole.attrs["timestep"])
+    for name in whole.data_vars:
+        assert whole[name].attrs["units"] and whole[name].attrs["long_name"]
+    assert whole.n_contacts[0] == 14 and whole.n_contacts[-1] > 14
+    assert whole.n_pieces[0] == 2 and whole.n_pieces[-1] == 1
+    mass = 4 / 3 * np.pi * MATERIALS["q-S"].density * (whole.radius.values**3)
+    assert whole.piece_mass.values[0] == pytest.approx([mass[:8].sum()] * 2, rel=1e-12)
+    assert whole.piece_mass.values[-1] == pytest.approx([mass.sum(), 0.0], rel=1e-12)
+    assert (whole.piece == 0).all() and (whole.box_length == 0.0).all() and (whole.box_work == 0.0).all()
+
+
+def test_output_is_in_the_order_of_the_input(whole):
+    """Radii tell who is who; and a shuffled input gives the same, shuffled."""
+    position, radius, velocity = clusters(10.0)
+    np.testing.assert_array_equal(whole.radius, radius)
+    materials = np.array(["q-S", "a-C"])[np.arange(16) % 2]
+    first = evolve(position, radius, velocity, material=list(materials), duration=2e-10, records=1)
+    order = np.random.default_rng(0).permutation(16)
+    second = evolve(
+        position[order], radius[order], velocity[order], material=list(materials[order]), duration=2e-10, records=1
+    )
+    for name in ("position", "velocity", "spin", "radius"):
+        scale = np.abs(first[name].values).max()
+        np.testing.assert_allclose(second[name].values, first[name].values[order], rtol=0, atol=1e-9 * scale)
+    assert np.linalg.norm(first.position.values - position, axis=1).max() < 20e-9
+
+
+def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypatch):
+    path = tmp_path / "run.npz"
+    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(module, "PROGRESS_INTERVAL", -1.0)
+
+    def kill(done, to_go, row):
+        if done > 0.4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(checkpoint=path, progress=kill)
+    parts = []
+    again = run(checkpoint=path, progress=lambda done, *_: parts.append(done))
+    assert len(parts) == 4 and parts[0] > 0.5
+    xr.testing.assert_identical(again, whole)
+    # that of other input is not used
+    other = run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
+    assert len(parts) == 12 and not other.identical(whole)
+
+
+def test_velocity_and_spin_of_the_same_numbers_are_told_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
+    options = GOOD | {"checkpoint": tmp_path / "run.npz", "balance": None}
+    motion = np.array([[0.0, 0, 1.0], [0, 0, -1.0]])
+    moving = evolve(**options, velocity=motion)
+    spinning = evolve(**options, spin=motion)
+    assert moving.kinetic_translation[0] > 0.0 and spinning.kinetic_translation[0] == 0.0
+
+
+def test_contacts_can_be_chosen():
+    """Spheres that overlap are in contact, unless contacts are given."""
+    near = np.array([[0.0, 0, 0], [60.02e-9, 0, 0]])
+    options = GOOD | {"position": near, "timestep": 1e-13}
+    assert evolve(**options).n_contacts[0] == 0
+    given = evolve(**options | {"contacts": [[1, 0]]})
+    # a hair beyond touch it still holds, and pulls
+    assert given.n_contacts[0] == 1 and given.velocity[1, 0] < 0.0
+    assert evolve(**GOOD | {"contacts": [], "balance": None}).n_contacts[-1] == 1
+
+
+def test_two_free_bodies_keep_their_momenta_and_places():
+    """Nothing moves the origin: one goes right, one up, and they never meet."""
+    radius = np.full(10, A)
+    position = np.concatenate([tree(radius[:5], "q-S", 1), tree(radius[5:], "q-S", 2) + [0, 400e-9, 0]])
+    velocity = np.zeros((10, 3))
+    velocity[:5, 0], velocity[5:, 1] = 3.0, 5.0
+    velocity += [0.7, -0.2, 0.1]
+    end = evolve(position, radius, velocity, material="q-S", duration=3e-8, records=3)
+    assert (end.n_pieces == 2).all()
+    for name in ("momentum", "angular_momentum"):
+        drift = end[name].values - end[name].values[0]
+        assert np.abs(drift).max() < 1e-12 * np.abs(end[name].values[0]).max()
+    time = float(end.time[-1])
+    for body in (slice(0, 5), slice(5, 10)):
+        wanted = position[body].mean(axis=0) + velocity[body].mean(axis=0) * time
+        np.testing.assert_allclose(end.position.values[body].mean(axis=0), wanted, rtol=0, atol=1e-16)
+
+
+def test_drag_brings_to_rest():
+    """A pair that moves and turns about its line of centres as a whole."""
+    velocity, spin = [[0, 0, 1.0]] * 2, [[1e7, 0, 0]] * 2
+    end = evolve(**GOOD | {"velocity": velocity, "spin": spin, "drag": 2e10, "duration": 1e-10, "timestep": 1e-13})
+    time = float(end.time[-1])
+    np.testing.assert_allclose(end.velocity.values[:, 2], np.exp(-2e10 * time), rtol=2e-3)
+    np.testing.assert_allclose(end.spin.values[:, 0], 1e7 * np.exp(-2e10 * time), rtol=2e-3)
+
+
+def test_spheres_that_do_not_touch_have_a_time_step():
+    """That of a contact between the two smallest."""
+    apart = np.array([[0.0, 0, 0], [70e-9, 0, 0], [0, 80e-9, 0]])
+    radius = [A, A, 1.2 * A]
+    free = evolve(apart, radius, material="q-S", duration=1e-10, records=1, timestep_factor=0.1)
+    held = evolve(PAIR, [A, A], material="q-S", duration=1e-10, records=1, timestep_factor=0.1)
+    assert free.attrs["timestep"] == pytest.approx(held.attrs["timestep"], rel=1e-12)
+    assert free.n_contacts[-1] == 0
