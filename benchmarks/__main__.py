@@ -9,6 +9,7 @@ from benchmarks import agreement, cost, kernel, machine, peer, pipeline, profile
 from benchmarks.before import Before
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
+from ratd.experiments.spin_up import plan as spin_up
 from ratd.pipeline import config
 
 HERE = Path(__file__).parent
@@ -43,7 +44,7 @@ def parser():
     result.add_argument("--core", type=int, default=1, help="core to run on (default 1)")
     result.add_argument("--drive", action="append", choices=DRIVES, help="drive of the cost (default: every one)")
     result.add_argument("--config", type=Path, action="append", default=[],
-                        help="config that stands over config/config.yaml, for the cost")  # fmt: skip
+                        help="config that stands over those in config/, for the cost")  # fmt: skip
     result.add_argument("--coarse", type=int, default=30,
                         help="how much faster than the config says the cost spins up (default 30)")  # fmt: skip
     result.add_argument("--full-below", type=float, default=10.0,
@@ -200,26 +201,21 @@ _MEASURE = {
 
 
 def _plan(arguments):
-    """The config; paths in it are meant from the folder of the repository."""
-    settings = {}
-    for path in (ROOT / "config" / "config.yaml", *arguments.config):
-        settings = config.merge(settings, config.read_yaml(path))
+    """The plan of the spin-up, whose config the files stand over; paths in it are meant from this repository."""
+    settings = config.load(ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml", *arguments.config)
     settings["materials_file"] = str(ROOT / settings["materials_file"])
     if arguments.quick:
-        settings = config.merge(
-            settings,
-            {
-                "materials": ["q-S"],
-                "sizes_nm": [50],
-                "seeds": {"first": 0, "number": 2},
-                "spin_up": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
-                "literal": {"angular_acceleration": 1e17},
-                "snapshots": {"grains": []},
-                "figures": {f"figure{number}": None for number in (1, 4, 5, 6, 8, 9, 10)}
-                | {"calibration": None, "formulae": None},
-            },
-        )
-    return config.check(settings, ROOT / "config" / "schema")
+        own = {
+            "materials": ["q-S"],
+            "sizes_nm": [50],
+            "seeds": {"first": 0, "number": 2},
+            "run": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
+            "literal": {"angular_acceleration": 1e17},
+            "snapshots": {"grains": []},
+            "figures": dict.fromkeys(settings["spin_up"]["figures"]),
+        }
+        settings = config.merge(settings, {"spin_up": own})
+    return spin_up.check(settings, ROOT / "config" / "schema")
 
 
 if __name__ == "__main__":

@@ -99,7 +99,7 @@ def compare(here, there):
 
 def main(before, number, root, say):
     """Spin up, compare and print a table."""
-    from ratd.base.markdown import markdown_table
+    from benchmarks.tables import markdown_table
 
     found = compare(spun_up(root, number, say), spun_up(before, number, say))
     rows = [[f"{value:.6g}" if isinstance(value, float) else value for value in row.values()] for row in found]

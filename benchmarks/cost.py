@@ -50,7 +50,7 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.pipeline.config.Plan
+    plan : ratd.experiments.spin_up.plan.Plan
         The config.
     drives : list of str
     coarse : dict of str to int

@@ -33,7 +33,7 @@ def measure(out, plan, *, root, sizes, about, say):
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.pipeline.config.Plan
+    plan : ratd.experiments.spin_up.plan.Plan
         The config; its first material and all its types and seeds are made.
     root : pathlib.Path
         Folder of the repository.
@@ -90,7 +90,6 @@ def _work(plan, size, seeds):
 def _snakemake(folder, plan, size, *, seeds, results):
     """Time that Snakemake takes for the same grains [s]."""
     config = plan.config | {
-        "results": results,
         "materials": plan.config["materials"][:1],
         "sizes_nm": [float(size)],
         "seeds": plan.config["seeds"] | {"number": seeds},
@@ -98,7 +97,7 @@ def _snakemake(folder, plan, size, *, seeds, results):
         "snapshots": plan.config["snapshots"] | {"grains": []},
         "figures": dict.fromkeys(plan.config["figures"]),
     }
-    (folder / "small.yaml").write_text(yaml.safe_dump(config))
+    (folder / "small.yaml").write_text(yaml.safe_dump({"results": results, "spin_up": config}))
     command = [sys.executable, "-m", "snakemake", "--cores", "1", "disruptions", "--configfile", "small.yaml"]
     start = time.perf_counter()
     done = subprocess.run(

@@ -23,7 +23,7 @@ def measure(out, plan, *, sizes, about, say):
     ----------
     out : pathlib.Path
         Folder of the results.
-    plan : ratd.pipeline.config.Plan
+    plan : ratd.experiments.spin_up.plan.Plan
         The config; its first material and first seed are taken.
     sizes : list of str
         Sizes, a subset of those of the plan.

@@ -6,9 +6,8 @@ from benchmarks.cost import FASTER, SHORT
 from benchmarks.figures import draw_cost, draw_kernel, draw_scaling
 from benchmarks.goals import goals
 from benchmarks.scaling import LINEAR_FROM, exponent
-from benchmarks.tables import frame, pair_ratios, projected_range
+from benchmarks.tables import frame, markdown_table, pair_ratios, projected_range
 from ratd.base.errors import FileError
-from ratd.base.markdown import markdown_table
 from ratd.pipeline.io import atomic
 
 MARKS = ("<!-- speed: written by python -m benchmarks -->\n", "<!-- end of speed -->\n")

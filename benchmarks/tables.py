@@ -54,3 +54,9 @@ def projected_range(row):
         return None, None
     rest = (1.0 - row.part_run_in_full) * row.core_hours
     return tuple(row.core_hours - rest + rest * scatter**sign for sign in (-1, 1))
+
+
+def markdown_table(header, rows):
+    """A table in Markdown, str, from the texts of its header and of its rows."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)

@@ -3,10 +3,13 @@
 import numpy as np
 import xarray as xr
 
+from ratd.aggregates import files as grain_files
 from ratd.aggregates.grain import Grain
 from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up import run_files
+from ratd.experiments.spin_up.files import END_REASONS, RUN_VALUES
 from ratd.laws.contact_constants import equilibrium_compression
-from ratd.pipeline import io, schema
+from ratd.pipeline import blocks, io, kinds
 
 
 def make_grain(seed=0, n=3, material="q-S"):
@@ -26,20 +29,20 @@ def make_run(seed=0, n_records=4, n_fragments=2, n_snapshots=0, n_monomers=3):
     rng = np.random.default_rng(seed)
     sizes = {"record": n_records, "fragment": n_fragments, "snapshot": n_snapshots, "monomer": n_monomers}
     run = xr.Dataset()
-    for name, variable in schema.KINDS["spinup"].variables.items():
+    for name, variable in kinds.kind_of("spinup").variables.items():
         dims = ("snapshot", "monomer") if variable.dims == ("snapshot_monomer",) else variable.dims
-        if not dims or dims == (schema.ROW,) or (n_snapshots == 0 and {"snapshot", "monomer"} & set(dims)):
+        if not dims or dims == (kinds.ROW,) or (n_snapshots == 0 and {"snapshot", "monomer"} & set(dims)):
             continue
         values = 1 + 10 * rng.random([sizes[dimension] for dimension in dims])
         run[name] = (dims, values.astype(variable.dtype), {"units": variable.units, "long_name": variable.long_name})
     numbers = {
         name: int(5 + seed) if variable.dtype != "f8" else 0.5 + seed
-        for name, variable in schema.RUN_VALUES.items()
+        for name, variable in RUN_VALUES.items()
         if not variable.flags
     }
     run.attrs = numbers | {
         "seed": seed,
-        "end_reason": schema.END_REASONS[seed % 2],
+        "end_reason": END_REASONS[seed % 2],
         "material": "q-S",
         "type": "BA",
         "drive": "prescribed",
@@ -55,14 +58,14 @@ def make_run(seed=0, n_records=4, n_fragments=2, n_snapshots=0, n_monomers=3):
 def grains_file(path, seeds=(0, 1, 2), attributes=None):
     """Write a file of grains with 3, 4, ... monomers."""
     grains = [make_grain(seed, n=3 + place) for place, seed in enumerate(seeds)]
-    rows = [io.grain_row(grain, cut_bound=1e8) for grain in grains]
-    io.write(path, io.block(rows, "grains", MATERIALS["q-S"], attributes), "grains")
+    rows = [grain_files.grain_row(grain, cut_bound=1e8) for grain in grains]
+    io.write(path, blocks.block(rows, "grains", MATERIALS["q-S"], attributes), "grains")
     return grains
 
 
 def runs_file(path):
     """Write a file of three runs of different length, the middle one with snapshots."""
     runs = [make_run(0), make_run(1, n_records=6, n_fragments=0, n_snapshots=2, n_monomers=5), make_run(2, 3, 7)]
-    rows = [io.run_row(run) for run in runs]
-    io.write(path, io.block(rows, "spinup", MATERIALS["q-S"], {"code_hash": "0123"}), "spinup")
+    rows = [run_files.run_row(run) for run in runs]
+    io.write(path, blocks.block(rows, "spinup", MATERIALS["q-S"], {"code_hash": "0123"}), "spinup")
     return runs

@@ -13,14 +13,13 @@ from ratd.pipeline.provenance import file_hash
 
 ROOT = Path(__file__).parents[1]
 TINY = {
-    "results": "results/tiny",
     "materials": ["q-S"],
     "types": ["BA", "BAM2"],
     "sizes_nm": [50],
     "seeds": {"first": 0, "number": 6},
     "block_size": 6,
     "small_grains": None,
-    "spin_up": {"epsilon": 0.2},
+    "run": {"epsilon": 0.2},
     "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
     "ensemble": {"bootstrap": 20},
     "figures": {
@@ -49,6 +48,7 @@ TINY = {
         "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
     },
 }
+"""What differs from the config of the spin-up as it comes."""
 
 
 class Pipeline:
@@ -62,7 +62,8 @@ class Pipeline:
         shutil.copy(ROOT / "Snakefile", folder)
         self.write_config(TINY)
 
-    def write_config(self, config):
+    def write_config(self, spin_up):
+        config = {"results": "results/tiny", "spin_up": spin_up}
         (self.folder / "tiny.yaml").write_text(yaml.safe_dump(config))
 
     def own_source(self):

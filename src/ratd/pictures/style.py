@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 
 from ratd.base.errors import InputError
 from ratd.base.units import NM
-from ratd.pipeline.io import atomic
+from ratd.pipeline.atomic import atomic
 
 MILLIMETRE = 1 / 25.4
 """Millimetre in inches, the unit of matplotlib."""

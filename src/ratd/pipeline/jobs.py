@@ -1,6 +1,7 @@
 """What a job of the pipeline needs around the calculation: log, provenance, blocks of grains that outlive a kill.
 
-This module decides no number: it is left out of all source hashes (see `ratd.pipeline.provenance`).
+What a job computes is a function of ratd, named in the params of its rule (`task`) and called by one of a few general
+scripts. This module decides no number: it is left out of all source hashes (see `ratd.pipeline.provenance`).
 """
 
 import fcntl
@@ -8,33 +9,17 @@ import logging
 import sys
 import time
 from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 
+import pandas as pd
+import xarray as xr
+
 from ratd.base.errors import FileError, InputError
-from ratd.pipeline import schema
+from ratd.pipeline import io
+from ratd.pipeline.kinds import fingerprint
 from ratd.pipeline.partial import Block, Pieces, locked
 from ratd.pipeline.provenance import provenance, source_hash
-
-WRITES = {
-    "grow": ("grains",),
-    "spin_up": ("spinup",),
-    "disrupt": ("disruption",),
-    "ensemble": ("table", "cells", "fit"),
-    "grown": ("table",),
-    "composition": ("table1", "table2"),
-    "pairs": ("pairs",),
-    "firm_bounds": ("firm_bounds",),
-    "parameters": ("disruption",),
-    "parameter_table": ("parameters",),
-    "formulae": ("disruption",),
-    "formula_table": ("formulae",),
-    "calibration_runs": ("spinup",),
-    "calibration": ("calibration",),
-}
-"""Kinds of files that the script of a rule writes."""
-
-READS = {"grain_page": ("pictures/grain_page.html", "pictures/grain_page.js")}
-"""Files of ratd beside its modules that the script of a rule reads."""
 
 PROGRESS_INTERVAL = 10.0
 """Least time between two messages of progress of one grain [s]."""
@@ -42,39 +27,31 @@ PROGRESS_INTERVAL = 10.0
 _held = []  # open files whose locks last as long as the process
 
 
-def code_hash(scripts, rule):
-    """Hash of all source that the output of a rule depends on.
+def task(script, function, *writes):
+    """What a rule is to do, and the hash of all source that its output depends on.
 
     Parameters
     ----------
-    scripts : path-like
-        Folder of the scripts; a rule and its script have the same name.
-    rule : str
+    script : path-like
+        The script of the rule, which says how the function is called and what becomes of its result.
+    function : str
+        Module and name, such as ``"ratd.experiments.spin_up.marks:disrupt"``.
+    *writes : str
+        Kinds of files that are written; their layout is part of the hash.
 
     Returns
     -------
-    str
-        See `ratd.pipeline.provenance.source_hash`; the layout of the files that the rule writes, and the files of `READS`, are
-        part of it.
+    dict
+        For ``params.task`` of the rule, from which `Job` takes it.
     """
-    layout = [schema.fingerprint(kind) for kind in WRITES.get(rule, ())]
-    texts = [(Path(__file__).parents[1] / name).read_text(encoding="utf-8") for name in READS.get(rule, ())]
-    return source_hash(script=Path(scripts) / f"{rule}.py", extra=layout + texts)
-
-
-def code_hashes(scripts):
-    """Hashes of the source of all scripts of a folder.
-
-    Parameters
-    ----------
-    scripts : path-like
-
-    Returns
-    -------
-    dict of str to str
-        Name of the rule -> `code_hash`.
-    """
-    return {path.stem: code_hash(scripts, path.stem) for path in sorted(Path(scripts).glob("*.py"))}
+    module, _, name = function.partition(":")
+    layout = [name, *map(fingerprint, writes)]
+    return {
+        "script": Path(script).name,
+        "function": function,
+        "writes": list(writes),
+        "hash": source_hash(script, modules=[module], extra=layout),
+    }
 
 
 class Job:
@@ -83,46 +60,50 @@ class Job:
     Parameters
     ----------
     snakemake : snakemake.script.Snakemake
-        The object of this name in a script. ``params.code`` is from `code_hash`, ``params.settings`` is a dict of all
-        that the output depends on, next to the inputs.
+        The object of this name in a script. ``params.task`` is from `task`, ``params.settings`` is a dict of all that
+        the output depends on, next to the inputs.
 
     Attributes
     ----------
     settings : dict
         As given.
+    input, output, wildcards : snakemake.io.Namedlist
+        Of the job.
     log : logging.Logger
         Writes to the first log file of the rule and to the terminal.
     provenance : dict
         Attributes for the files that the job writes, from `ratd.pipeline.provenance.provenance`.
-
-    Notes
-    -----
-    A rule and its script have the same name, or ``params.script`` is the name of the script.
     """
 
     def __init__(self, snakemake):
         self._snakemake = snakemake
+        self._task = snakemake.params.task
         self.settings = snakemake.params.settings
+        self.input, self.output, self.wildcards = snakemake.input, snakemake.output, snakemake.wildcards
         self.log = logging.getLogger("ratd.job")
 
     def __enter__(self):
         self._set_up_log()
         try:
-            job = self._snakemake
-            script = getattr(job.params, "script", job.rule)
-            if code_hash(job.scriptdir, script) != job.params.code:
+            script = Path(self._snakemake.scriptdir, self._task["script"])
+            if task(script, self._task["function"], *self._task["writes"]) != self._task:
                 raise InputError("the source was changed after snakemake was started: start the same command again")
-            self.provenance = provenance(job.params.code, self.settings, job.input)
+            self.provenance = self.provenance_of(self.settings, self.input)
         except (InputError, FileError) as error:
             self._fail(error)
         return self
+
+    @property
+    def function(self):
+        """The function that the rule names."""
+        module, _, name = self._task["function"].partition(":")
+        return getattr(import_module(module), name)
 
     def _set_up_log(self):
         """Full messages into the log file, the same with the name of the job in front on the terminal."""
         self.log.setLevel(logging.INFO)
         self.log.propagate = False
-        wildcards = self._snakemake.wildcards
-        words = [f"{word} nm" if name == "size" else word for name, word in wildcards.items()]
+        words = [f"{word} nm" if name == "size" else word for name, word in self.wildcards.items()]
         label = " ".join([self._snakemake.rule, *words]).replace("%", "%%")
         for handler, form in (
             (logging.FileHandler(self._snakemake.log[0]), "%(asctime)s %(message)s"),
@@ -142,6 +123,33 @@ class Job:
         self.log.error(f"error: {error}")
         sys.exit(1)
 
+    def write(self, name, content):
+        """Write one output of the rule.
+
+        Parameters
+        ----------
+        name : str
+            Of the output, and for a dataset that of the kind of file as well.
+        content : xarray.Dataset, pandas.DataFrame or str
+            Becomes netCDF, CSV or text.
+        """
+        path = self.output[name]
+        if isinstance(content, xr.Dataset):
+            self._writes(name)
+            io.write(path, content.assign_attrs(self.provenance), name)
+        elif isinstance(content, pd.DataFrame):
+            io.write_text(path, content.to_csv(index=False, float_format="%.9g"))
+        else:
+            io.write_text(path, content)
+        self.log.info(f"{path} written")
+
+    def _writes(self, kind):
+        if kind not in self._task["writes"]:
+            raise InputError(
+                f"{self._task['function']} writes {kind}, which its rule does not name; "
+                f"allowed: {', '.join(self._task['writes']) or 'no netCDF'}"
+            )
+
     def block(self, target, kind, material, seeds, make):
         """Write the file of a block of grains, grain by grain, going on where a killed job was.
 
@@ -150,23 +158,24 @@ class Job:
         target : path-like
             The file to write.
         kind : str
-            A key of `ratd.pipeline.schema.KINDS`.
+            One of those that the rule writes.
         material : ratd.base.materials.Material
             What the grains are made of.
         seeds : sequence of int
             Seeds of the grains, in the order in which they stand in the file. Where the rule has the wildcard `seeds`,
             those outside it are left out: a file of grains may hold more of them than a drive wants.
         make : callable
-            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.pipeline.io`). Below the path `checkpoint` it may
-            keep what it needs to go on in the middle of a grain; a file made with other source, settings or inputs
-            has another name and is never found. If it raises RuntimeError the other grains are made all the same.
+            ``make(seed, checkpoint)`` returns the row of a grain (see `ratd.pipeline.blocks`). Below the path
+            `checkpoint` it may keep what it needs to go on in the middle of a grain; a file made with other source,
+            settings or inputs has another name and is never found. If it raises RuntimeError the other grains are made
+            all the same.
 
         Raises
         ------
         InputError
             If grains failed: one sentence with the seed and the reason of each.
         """
-        wanted = self._snakemake.wildcards.get("seeds")
+        wanted = self.wildcards.get("seeds")
         if wanted:
             seeds = [seed for seed in seeds if seed in seeds_of(wanted)]
         block = Block(Path(target), material, list(seeds), self.provenance)
@@ -191,17 +200,18 @@ class Job:
         ----------
         blocks : list of Block
         kind : str
-            A key of `ratd.pipeline.schema.KINDS`.
+            One of those that the rule writes.
         make : callable
             ``make(waiting, done)`` computes the grains that are not finished yet, ``waiting``, a list of pairs of a
             block and a seed, in any order. It calls ``done(number, row)`` with the place in this list and the row
-            (see `ratd.pipeline.io`) of each grain that it has finished, or ``done(number, failure=reason)``.
+            (see `ratd.pipeline.blocks`) of each grain that it has finished, or ``done(number, failure=reason)``.
 
         Raises
         ------
         InputError
             If grains failed: one sentence with the seed and the reason of each.
         """
+        self._writes(kind)
         with ExitStack() as locks:
             for block in sorted(blocks, key=lambda block: block.target):
                 locks.enter_context(locked(block.folder / "lock", self.log))
@@ -246,33 +256,29 @@ class Job:
 
     def provenance_of(self, settings, inputs):
         """Attributes of one of several files that the job writes, which has settings and inputs of its own."""
-        return provenance(self._snakemake.params.code, settings, inputs)
+        return provenance(self._task["hash"], settings, inputs)
 
-    def progress(self, seed, place=""):
-        """Callback for `ratd.spin_up` that says how far the run of one grain is.
+    def progress(self, name):
+        """Something that tells how far one grain is, but not too often.
 
         Parameters
         ----------
-        seed : int
-        place : str, optional
-            What stands before the seed, where the job has several blocks.
+        name : str
+            Of the grain.
 
         Returns
         -------
         callable
-            ``progress(omega, mass_fraction, seconds_to_go, steps)``; a message at most every `PROGRESS_INTERVAL`.
+            ``say(tell)``: calls ``tell()`` for a text and logs it, at most every `PROGRESS_INTERVAL`.
         """
         last = time.monotonic()
 
-        def say(omega, mass_fraction, seconds_to_go, steps):
+        def say(tell):
             nonlocal last
             now = time.monotonic()
             if now - last >= PROGRESS_INTERVAL:
                 last = now
-                self.log.info(
-                    f"{place}seed {seed}: omega {omega:.3g} rad/s, mass left {100 * mass_fraction:.0f} %, "
-                    f"{duration(seconds_to_go)} to go, {steps} steps"
-                )
+                self.log.info(f"{name}: {tell()}")
 
         return say
 

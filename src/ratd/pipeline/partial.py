@@ -17,7 +17,7 @@ from pathlib import Path
 
 from ratd.base.errors import FileError
 from ratd.base.materials import Material
-from ratd.pipeline import io
+from ratd.pipeline import blocks, io
 from ratd.pipeline.provenance import settings_hash
 
 WORK_BETWEEN_PIECES = 20
@@ -69,7 +69,7 @@ class Pieces:
     ----------
     block : Block
     kind : str
-        A key of `ratd.pipeline.schema.KINDS`.
+        Kind of the file, see `ratd.pipeline.kinds`.
     """
 
     def __init__(self, block, kind):
@@ -87,7 +87,7 @@ class Pieces:
         return seed in self._files
 
     def add(self, seed, row):
-        """Keep the row (see `ratd.pipeline.io`) of a grain that is finished."""
+        """Keep the row (see `ratd.pipeline.blocks`) of a grain that is finished."""
         self._rows[seed] = row
         if time.monotonic() - self._written >= self._pause:
             self.write()
@@ -113,11 +113,11 @@ class Pieces:
         rows = {}
         for path in sorted(set(self._files.values())):
             file = io.read(path, self._kind)
-            rows |= zip(file["seed"].values.tolist(), io.rows(file, self._kind), strict=True)
+            rows |= zip(file["seed"].values.tolist(), blocks.rows(file, self._kind), strict=True)
         self._write(self._block.target, [rows[seed] for seed in self._block.seeds])
 
     def _write(self, path, rows):
-        io.write(path, io.block(rows, self._kind, self._block.material, self._block.provenance), self._kind)
+        io.write(path, blocks.block(rows, self._kind, self._block.material, self._block.provenance), self._kind)
 
 
 def partial_folder(target):

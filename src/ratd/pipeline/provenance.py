@@ -1,14 +1,14 @@
 """Which source, settings and versions a file was made with.
 
 A stage of the pipeline has to run again when something that its results depend on has changed, and only then. Its
-source is one script in `workflow/scripts` and every module of ratd that the script imports, directly or through other
-modules. `source_hash` hashes the text of exactly these, without comments and docstrings, so that touching or explaining
-a file changes nothing, a change of a figure concerns figures only, and a change of a contact law concerns the spin-ups
-and what follows but not the growth.
+source is one script in `workflow/scripts`, the module of the function that its rule names, and every module of ratd
+that these import, directly or through other modules. `source_hash` hashes the text of exactly these, without comments
+and docstrings, so that touching or explaining a file changes nothing, a change of a figure concerns figures only, and a
+change of a contact law concerns the runs and what follows but not the growth.
 
-The plumbing (`PLUMBING`: reading and writing files, checking the config, running jobs) is imported by every script
-and decides no number, so it stays outside the hash. What it does decide, the variables of each kind of file, enters as
-`ratd.pipeline.schema.fingerprint(kind)`, stage by stage.
+The plumbing (`PLUMBING`: reading and writing files, checking the config, running jobs) is imported by every stage and
+decides no number, so it stays outside the hash. What the layout of a file decides enters as
+`ratd.pipeline.kinds.fingerprint`, stage by stage.
 """
 
 import ast
@@ -22,8 +22,9 @@ from pathlib import Path
 
 from ratd.base.errors import InputError
 
-PLUMBING = frozenset({"ratd", "ratd.pipeline.schema", "ratd.pipeline.io", "ratd.pipeline.provenance", "ratd.pipeline.config", "ratd.pipeline.jobs", "ratd.pipeline.partial"})
-"""Modules outside every source hash: they carry numbers from a file to a function and back."""
+PLUMBING = ("ratd", "ratd.pipeline")
+"""The package itself, which loads what is asked for, and all that carries numbers from a file to a function and back:
+outside every source hash, the second with all its modules."""
 
 NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")
 """Packages whose versions are written into every file."""
@@ -45,7 +46,7 @@ def module_files(root=_ROOT):
         Dotted name, e.g. ``"ratd.laws.jkr"``, -> file; ``"ratd"`` is the package itself, and stands for its
         ``__init__.py`` as every package does.
     """
-    # The names are those of a listing: on a file system that ignores case, `ratd.Grain` is not the module `ratd.aggregates.grain`.
+    # The names are those of a listing, also on a file system that ignores case: `ratd.Engine` is no module.
     files = {}
     for path in sorted(root.rglob("*.py")):
         *folders, name = path.relative_to(root).with_suffix("").parts
@@ -155,8 +156,13 @@ def essential_text(source):
     return "\n".join(line for row, line in enumerate(lines) if row not in left_out)
 
 
-def closure(modules, root=_ROOT, leave_out=PLUMBING):
-    """Modules together with every module of ratd that they import, directly or not.
+def is_plumbing(name):
+    """Whether a module is outside every source hash, see `PLUMBING`."""
+    return name in PLUMBING or name.startswith("ratd.pipeline.")
+
+
+def closure(modules, root=_ROOT):
+    """Modules together with every module of ratd that they import, directly or not, without the plumbing.
 
     Parameters
     ----------
@@ -164,8 +170,6 @@ def closure(modules, root=_ROOT, leave_out=PLUMBING):
         Dotted names.
     root : Path, optional
         Folder of the package.
-    leave_out : collection of str, optional
-        Modules that are neither counted nor followed.
 
     Returns
     -------
@@ -177,26 +181,31 @@ def closure(modules, root=_ROOT, leave_out=PLUMBING):
     InputError
         If ratd has no module of one of the names.
     """
-    return sorted(_texts(modules, module_files(root), leave_out))
+    return sorted(_texts(modules, module_files(root)))
 
 
-def _texts(modules, files, leave_out=PLUMBING):
+def _texts(modules, files):
     """Source of every module of `closure`: dict of dotted name to text."""
-    waiting = [name for name in modules if name not in leave_out]
+    waiting = list(modules)
     found = {}
     while waiting:
         name = waiting.pop()
-        if name in found:
+        if name in found or is_plumbing(name):
             continue
         if name not in files:
             raise InputError(f"there is no module {name!r} in ratd to take a source hash of")
         found[name] = files[name].read_text()
-        waiting.extend(_imported(found[name], name, files) - found.keys() - set(leave_out))
+        waiting.extend(_imported(found[name], name, files) - found.keys())
     return found
 
 
+def _beside(path):
+    """Files of other types that have the name of a module and lie beside it: they belong to it."""
+    return [other for other in sorted(path.parent.glob(f"{path.stem}.*")) if other.suffix in (".html", ".js")]
+
+
 def source_hash(script=None, modules=(), extra=(), root=_ROOT):
-    """Content hash of a script, of some modules, and of every module of ratd that these import.
+    """Content hash of a script, of some modules, of every module of ratd that these import, and of pages beside them.
 
     Parameters
     ----------
@@ -229,6 +238,8 @@ def source_hash(script=None, modules=(), extra=(), root=_ROOT):
         digest.update(f"script\0{essential_text(text)}\0".encode())
     for name, text in sorted(_texts(start, files).items()):
         digest.update(f"{name}\0{essential_text(text)}\0".encode())
+        for path in _beside(files[name]):
+            digest.update(f"{path.name}\0{path.read_text()}\0".encode())
     for text in extra:
         digest.update(f"extra\0{text}\0".encode())
     return digest.hexdigest()[:16]

@@ -10,7 +10,7 @@ from ratd.validation import peer_lammps
 EXTENTS = ("full", "quick")
 
 
-class Plan:
+class Checks:
     """What `config/validation.yaml` asks for.
 
     Parameters
@@ -57,6 +57,17 @@ class Plan:
         if check == "lammps":
             peer_lammps.load()
         return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
+
+    @property
+    def names(self):
+        """Names of all checks, list of str."""
+        return list(dict.fromkeys(check for pieces in self.pieces.values() for check in pieces))
+
+    def tables(self, extent):
+        """Tables of all checks of an extent, list of str. Errors as of `files`."""
+        for check in self.pieces[extent]:
+            self.files(extent, check)
+        return [f"{self.results}/{extent}/{check}.csv" for check in self.pieces[extent]]
 
     def _pieces(self, check, own):
         return {

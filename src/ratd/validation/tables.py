@@ -4,7 +4,8 @@ import pandas as pd
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.pipeline import io, schema
+from ratd.pipeline import io
+from ratd.pipeline.kinds import Kind, entries, kind_of, register
 
 CASE = "case"
 """Dimension along which the cases of a file stand."""
@@ -39,7 +40,7 @@ def grain_values(grain):
 
 
 def table_kind(name, title, columns):
-    """Make a kind of file known to `ratd.pipeline.schema`, with a variable a column.
+    """Register a kind of file with a variable a column, see `ratd.pipeline.kinds`.
 
     Parameters
     ----------
@@ -52,51 +53,42 @@ def table_kind(name, title, columns):
     Returns
     -------
     str
-        Name of the kind, for `read_tables` and `write_table`.
+        Name of the kind, for `read_tables` and `as_dataset`.
     """
-    kind = f"validation_{name}"
-    schema.KINDS[kind] = schema.Kind(
-        title,
-        {
-            column: schema.Variable((CASE,), "f8" if units else "str", units, meaning, nan=bool(units))
-            for column, (units, meaning) in columns.items()
-        },
-    )
-    return kind
+    return register(f"validation_{name}", Kind(title, entries(columns, CASE)))
 
 
-def write_table(path, rows, kind, provenance):
-    """Write the cases of a check.
+def as_dataset(rows, kind):
+    """The cases of a check as a dataset.
 
     Parameters
     ----------
-    path : path-like
     rows : list of dict
         One a case, all with the columns of the kind.
     kind : str
         From `table_kind`.
-    provenance : dict
-        Global attributes, from `ratd.pipeline.provenance.provenance`.
+
+    Returns
+    -------
+    xarray.Dataset
 
     Raises
     ------
     InputError
         If there is no case, or a case has other columns than the kind.
     """
-    columns = schema.KINDS[kind].variables
+    columns = kind_of(kind).variables
     if not rows:
-        raise InputError(f"{path}: a file of {kind} needs at least one case")
+        raise InputError(f"a file of {kind} needs at least one case")
     for row in rows:
         if row.keys() != columns.keys():
-            raise InputError(f"{path}: a case of {kind} has the columns {sorted(row)}, but needs {sorted(columns)}")
-    dataset = xr.Dataset(
+            raise InputError(f"a case of {kind} has the columns {sorted(row)}, but needs {sorted(columns)}")
+    return xr.Dataset(
         {
             name: (CASE, [str(row[name]) if variable.dtype == "str" else float(row[name]) for row in rows])
             for name, variable in columns.items()
-        },
-        attrs=provenance,
+        }
     )
-    io.write(path, dataset, kind)
 
 
 def read_tables(paths, kind):
@@ -113,3 +105,8 @@ def read_tables(paths, kind):
     pandas.DataFrame
     """
     return pd.concat([io.read(path, kind).to_dataframe() for path in paths], ignore_index=True)
+
+
+def table(files, settings, say):
+    """All cases of a check, the output ``csv`` of a job of the pipeline, from the files of its pieces."""
+    return {"csv": read_tables(files, settings["kind"])}

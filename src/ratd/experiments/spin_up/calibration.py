@@ -15,6 +15,9 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.statistics import jackknife_error, slope_of
 from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.printed import PAPER
+from ratd.experiments.spin_up.run_files import read_runs
+from ratd.pipeline.kinds import Kind, as_dataset, entries, over, register
 
 __all__ = [
     "CALIBRATION_COLUMNS",
@@ -22,6 +25,7 @@ __all__ = [
     "MARKS",
     "calibrate",
     "calibration_table",
+    "fit",
     "onset",
     "printed_acceleration",
     "same_rate",
@@ -197,6 +201,29 @@ def calibrate(table, omega_onset, mark=ONSET):
     )
 
 
+def fit(files, settings, say):
+    """The table of the runs of the calibration with its fit, from their files.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        Spin-ups.
+    settings : dict
+        ``omega_onset`` [rad s-1].
+    say : callable
+        Called with a sentence.
+
+    Returns
+    -------
+    dict
+        Name of an output -> what it holds.
+    """
+    table = calibration_table([run for path in files for run in read_runs(path)])
+    found = calibrate(table, settings["omega_onset"])
+    say(f"calibrated d omega/dt: {float(found['calibrated']):.3g} rad/s2")
+    return {"calibration": as_dataset(table).merge(found), "calibration_csv": table}
+
+
 def _inverted(x, y, grain, wanted):
     """Slope of y = prefactor of the grain + slope x, and the mean over the grains of the x at which y is `wanted`."""
     if not len(x):
@@ -204,3 +231,13 @@ def _inverted(x, y, grain, wanted):
     slope, _ = slope_of(x, y, grain)
     rest = pd.Series(wanted - (y - slope * x)).groupby(np.asarray(grain)).mean()
     return slope, float((rest / slope).mean())
+
+
+register(
+    "calibration",
+    Kind(
+        "Onset of mass loss with the literal drive, and the calibrated angular acceleration",
+        entries(CALIBRATION_COLUMNS) | over((), FIT_VALUES, nan=True),
+        references=PAPER,
+    ),
+)

@@ -3,41 +3,20 @@
 import numpy as np
 import pandas as pd
 
-from ratd.base.markdown import markdown_table
 from ratd.base.materials import CO_S_FRACTIONS, MATERIALS, element_ratios
 from ratd.base.units import GPA, MJ_PER_M2
+from ratd.experiments.spin_up.printed import OBSERVED, PAPER, PRINTED_1, PRINTED_2
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["OBSERVED", "PRINTED_1", "PRINTED_2", "TABLE_1_COLUMNS", "TABLE_2_COLUMNS", "table1", "table2", "tell"]
-
-PRINTED_1 = {"Mg/O": "0.23", "Si/O": "0.27", "Fe/O": "0.21", "Mg/Fe": "1.08", "(Mg+Fe)/Si": "1.60"}
-"""Ratios of element abundances in co-S as printed in Table 1 ("this work"), with their printed digits."""
-
-OBSERVED = {
-    "min_2007": ("Min et al. (2007)", (0.31, 0.26, 0.15, 2.03, 1.82)),
-    "voshchinnikov_2010": ("Voshchinnikov & Henning (2010)", (np.nan, np.nan, np.nan, 1.09, 2.25)),
-    "compiegne_2011": ("Compiègne et al. (2011)", (0.23, 0.19, 0.19, 1.25, 2.25)),
-    "hensley_2021": ("Hensley & Draine (2021)", (0.19, 0.15, 0.17, 1.07, 2.34)),
-}
-"""Ratios in the interstellar medium as Table 1 quotes them, in the order of `PRINTED_1`."""
+__all__ = ["TABLE_1_COLUMNS", "TABLE_2_COLUMNS", "table1", "table2", "tables"]
 
 PROPERTIES = {
-    "surface_energy": ("J m-2", "surface energy gamma", MJ_PER_M2, "gamma [mJ/m²]"),
-    "youngs_modulus": ("Pa", "Young's modulus E", GPA, "E [GPa]"),
-    "poisson_number": ("1", "Poisson number nu", 1.0, "nu"),
-    "density": ("kg m-3", "density rho of the bulk material", 1.0, "rho [kg/m³]"),
+    "surface_energy": ("J m-2", "surface energy gamma", MJ_PER_M2),
+    "youngs_modulus": ("Pa", "Young's modulus E", GPA),
+    "poisson_number": ("1", "Poisson number nu", 1.0),
+    "density": ("kg m-3", "density rho of the bulk material", 1.0),
 }
-"""Property of a material -> units, meaning, unit in which it is printed [SI], head of its column in print."""
-
-PRINTED_2 = {
-    "a-C": ("50", "168", "0.16", "2368"),
-    "q-S": ("20", "54", "0.17", "2650"),
-    "co-S": ("70", "169", "0.27", "3707"),
-    "forsterite": ("70", "204", "0.24", "3213"),
-    "fayalite": ("70", "140", "0.32", "4393"),
-    "enstatite": ("70", "180", "0.21", "3209"),
-    "ferrosilite": ("70", "142", "0.31", "4014"),
-}
-"""Table 2 as printed, with its digits, in the order and units of `PROPERTIES`."""
+"""Property of a material -> units, meaning, unit in which it is printed [SI]."""
 
 TABLE_1_COLUMNS = {
     "ratio": ("", "elements, by number of atoms"),
@@ -54,7 +33,7 @@ TABLE_2_COLUMNS = {
     "mole_fraction": ("1", "mole fraction in co-S"),
     **{
         f"{name}{suffix}": ("1" if suffix == "_over_printed" else units, what.format(meaning))
-        for name, (units, meaning, _, _) in PROPERTIES.items()
+        for name, (units, meaning, _) in PROPERTIES.items()
         for suffix, what in (
             ("", "{}"),
             ("_printed", "{} as printed in Table 2 of the paper"),
@@ -112,7 +91,7 @@ def table2():
     rows = []
     for name, texts in PRINTED_2.items():
         row = {"material": name, "mole_fraction": CO_S_FRACTIONS.get(name, np.nan)}
-        for (quantity, (_, _, unit, _)), text in zip(PROPERTIES.items(), texts, strict=True):
+        for (quantity, (_, _, unit)), text in zip(PROPERTIES.items(), texts, strict=True):
             used = getattr(MATERIALS[name], quantity)
             row[quantity] = used
             row[f"{quantity}_printed"] = float(text) * unit
@@ -122,32 +101,13 @@ def table2():
     return pd.DataFrame(rows)[list(TABLE_2_COLUMNS)]
 
 
-def tell():
-    """Both tables in Markdown.
+def tables(files, settings, say):
+    """Both tables, the outputs of a job of the pipeline that nothing in the config decides."""
+    found = {}
+    for name, table in (("table1", table1()), ("table2", table2())):
+        found |= {name: as_dataset(table), f"{name}_csv": table}
+    return found
 
-    Returns
-    -------
-    tuple of str
-        Table 1 and Table 2. A printed value stands with half of its last digit; the ratio is used over printed.
-    """
-    head = ["co-S", *PRINTED_1]
-    first = table1().set_index("ratio")
-    rows = [
-        ["computed", *(f"{value:.4f}" for value in first["abundance"])],
-        ["printed", *(f"{text} ± {rounding(text):g}" for text in PRINTED_1.values())],
-        ["computed/printed", *(f"{value:.3f}" for value in first["abundance_over_printed"])],
-    ]
-    for name, (source, _) in OBSERVED.items():
-        rows.append([source, *("–" if np.isnan(value) else f"{value:g}" for value in first[name])])
-    one = markdown_table(head, rows)
 
-    head = ["material", "mole fraction", *(f"{heading}: {kind}" for *_, heading in PROPERTIES.values()
-                                           for kind in ("used", "printed", "ratio"))]  # fmt: skip
-    rows = []
-    for _, row in table2().iterrows():
-        cells = [row["material"], "–" if np.isnan(row["mole_fraction"]) else f"{row['mole_fraction']:g}"]
-        for (quantity, (_, _, unit, _)), text in zip(PROPERTIES.items(), PRINTED_2[row["material"]], strict=True):
-            cells.append(f"{row[quantity] / unit:.5g}")
-            cells += [f"{text} ± {rounding(text):g}", f"{row[f'{quantity}_over_printed']:.4f}"]
-        rows.append(cells)
-    return one, markdown_table(head, rows)
+register("table1", Kind("Table 1: ratios of elements in co-S", entries(TABLE_1_COLUMNS), references=PAPER))
+register("table2", Kind("Table 2: properties of the materials", entries(TABLE_2_COLUMNS), references=PAPER))

@@ -10,10 +10,9 @@ from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
 from ratd.base.statistics import equal_weights, weighted_line
 from ratd.experiments.spin_up.cells import as_frame, size_key, sort_cells
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3, TABLE_3_SOURCE
 
 __all__ = [
-    "PAPER_MEAN_RADIUS",
-    "TABLE_3",
     "eq33",
     "eq33_omega",
     "fit_as_configured",
@@ -23,24 +22,6 @@ __all__ = [
     "table3",
     "table3_dataset",
 ]
-
-TABLE_3 = {
-    ("a-C", "BA"): (1.97, 0.10),
-    ("a-C", "BAM1"): (2.28, 0.12),
-    ("a-C", "BAM2"): (2.25, 0.13),
-    ("q-S", "BA"): (2.13, 0.10),
-    ("q-S", "BAM1"): (2.18, 0.14),
-    ("q-S", "BAM2"): (2.22, 0.14),
-    ("co-S", "BA"): (1.50, 0.10),
-    ("co-S", "BAM1"): (1.65, 0.14),
-    ("co-S", "BAM2"): (1.57, 0.15),
-}
-"""(A, alpha) of Eq. 33 as printed in Table 3 of Reissl et al. (2024), A&A 692, A60, for comparison only."""
-
-TABLE_3_SOURCE = "Reissl et al. (2024), A&A 692, A60, Table 3"
-
-PAPER_MEAN_RADIUS = 20e-9
-"""<a_mon> [m] that the paper gives for its radius distribution (Sect. 3); the grains' own mean is about 30 nm."""
 
 
 def eq33(a_eff, surface_energy, density, mean_monomer_radius, n_contacts, filling_factor, A, alpha):
@@ -254,7 +235,7 @@ def fit_as_configured(table, settings):
     table : pandas.DataFrame or xarray.Dataset
         See `fit_ensemble`.
     settings : dict
-        From `ratd.pipeline.config.Plan.ensemble`.
+        From `ratd.experiments.spin_up.settings.Settings.ensemble`.
 
     Returns
     -------

@@ -10,14 +10,26 @@ from 10 nm on of the materials of the paper, it lies above the cut bound.
 import math
 
 import numpy as np
+import pandas as pd
 
+from ratd.aggregates.files import read_grains
 from ratd.base.jit import jit
 from ratd.experiments.spin_up.cut_bound import contact_strengths, plane_normals
+from ratd.experiments.spin_up.printed import PAPER
 from ratd.geometry.shape import centre_of_mass, principal_axes
 from ratd.laws.contact_constants import equilibrium_contact_radius, reduced_radius
 from ratd.laws.tangential import sliding_limit, sliding_stiffness
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["FIRM_BOUND_COLUMNS", "bridge_pulls", "firm_bound", "least_firm_bridge", "least_firm_plane", "slide_forces"]
+__all__ = [
+    "FIRM_BOUND_COLUMNS",
+    "bridge_pulls",
+    "firm_bound",
+    "least_firm_bridge",
+    "least_firm_plane",
+    "slide_forces",
+    "table",
+]
 
 FIRM_BOUND_COLUMNS = {
     "material": ("", "material"),
@@ -221,3 +233,35 @@ def least_firm_plane(position, load, contacts, normal, pull, slide, planes):
             if capacity < least * size:
                 least = capacity / size
     return least
+
+
+def table(files, settings, say):
+    """The table of the firm bounds of all grains of some files.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        Grains as grown.
+    settings : dict
+        Empty.
+    say : callable
+        Called with a sentence.
+
+    Returns
+    -------
+    dict
+        Name of an output -> what it holds.
+    """
+    rows = []
+    for path in files:
+        for grain in read_grains(path):
+            own = (grain.material.name, grain.type, grain.a_eff, float(grain.seed), firm_bound(grain))
+            rows.append(dict(zip(FIRM_BOUND_COLUMNS, own, strict=True)))
+        say(f"{len(rows)} grains, the last ones from {path}")
+    return {"firm_bounds": as_dataset(pd.DataFrame(rows))}
+
+
+register(
+    "firm_bounds",
+    Kind("Bounds from cuts whose contacts hold sideways and push", entries(FIRM_BOUND_COLUMNS), references=PAPER),
+)

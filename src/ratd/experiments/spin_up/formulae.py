@@ -8,8 +8,20 @@ import pandas as pd
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.parameters import beside_own, marks_row
+from ratd.experiments.spin_up.printed import PAPER
+from ratd.experiments.spin_up.run_files import read_marks
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["DAMPING", "FORMULAE", "FORMULA_COLUMNS", "OWN", "formula_effects", "formula_table", "printed_factors"]
+__all__ = [
+    "DAMPING",
+    "FORMULAE",
+    "FORMULA_COLUMNS",
+    "OWN",
+    "formula_effects",
+    "formula_table",
+    "printed_factors",
+    "table",
+]
 
 OWN = "consistent"
 DAMPING = "damping"
@@ -90,6 +102,28 @@ def formula_table(files):
     return beside_own(table, table["formula"] == OWN, "the consistent model")
 
 
+def table(files, settings, say):
+    """The table of the runs with single printed formulae, from their files.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        Marks of the grains of each formula.
+    settings : dict
+        ``formulae``: of each file the name of its formula.
+    say : callable
+        Called with a sentence.
+
+    Returns
+    -------
+    dict
+        Name of an output -> what it holds.
+    """
+    found = formula_table(list(zip(settings["formulae"], map(read_marks, files), strict=True)))
+    say(f"{len(found)} runs")
+    return {"formulae": as_dataset(found), "formulae_csv": found}
+
+
 def formula_effects(table, mark):
     """How far each printed formula moves a mark: medians over the grains of a type and size, and over all of a size.
 
@@ -112,3 +146,6 @@ def formula_effects(table, mark):
         for kind, here in [*part.groupby("type"), ("all", part)]:
             rows.append({"formula": formula, "nm": size / 1000, "type": kind} | median_of(here[f"{mark}_ratio"]))
     return pd.DataFrame(rows)
+
+
+register("formulae", Kind("Grains spun up with single formulae as printed", entries(FORMULA_COLUMNS), references=PAPER))

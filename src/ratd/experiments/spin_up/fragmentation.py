@@ -1,6 +1,6 @@
 """Which fragments leave a grain until it is disrupted, and how the mass is spread over them.
 
-A run notes each fragment when it has left for good (`run.FRAGMENTS`). Two pieces of that list say how a grain
+A run notes each fragment when it has left for good (`records.FRAGMENTS`). Two pieces of that list say how a grain
 falls apart: what left up to omega_disr, the peak of the stress, and what left while the first half of the mass went,
 which takes in the collapse itself (it follows the peak of the stress, and a piece that was cut off leaves a little
 later). Only these fragments are kept: what becomes of the largest one after that is a matter of the spin-up going on.

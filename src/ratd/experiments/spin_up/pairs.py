@@ -3,16 +3,20 @@
 import math
 
 import numpy as np
+import pandas as pd
 
+from ratd.base.materials import Material
 from ratd.drives.rotating import OMEGA, rotating
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.engine.step import FEW_CONTACTS, run, until
+from ratd.experiments.spin_up.printed import PAPER
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
 from ratd.laws.jkr_with_springs import jkr
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega"]
+__all__ = ["PAIR_COLUMNS", "eq35_omega", "force_controlled_omega", "holding_omega", "pairs", "parting_omega", "table"]
 
 PAIR_COLUMNS = {
     "material": ("", "material of both monomers"),
@@ -124,3 +128,13 @@ def pairs(material, number, seed, smallest, largest, *, damped, undamped, progre
             if progress is not None and (k + 1) % 20 == 0:
                 progress(f"{start}: {k + 1} of {number} pairs")
     return rows
+
+
+def table(files, settings, say):
+    """The table of the pairs of one material, which the settings (arguments of `pairs`) alone decide."""
+    settings = dict(settings)
+    rows = pairs(Material(**settings.pop("material")), **settings, progress=say)
+    return {"pairs": as_dataset(pd.DataFrame(rows))}
+
+
+register("pairs", Kind("Pairs of equal monomers that part", entries(PAIR_COLUMNS), references=PAPER))

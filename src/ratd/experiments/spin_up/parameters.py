@@ -5,8 +5,22 @@ import pandas as pd
 
 from ratd.base.errors import InputError
 from ratd.base.statistics import median_of
+from ratd.experiments.spin_up.printed import PAPER
+from ratd.pipeline import io
+from ratd.pipeline.blocks import material_of, rows
+from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["MARKS", "PARAMETERS", "PARAMETER_COLUMNS", "beside_own", "effect", "marks_row", "parameter_table", "ways"]
+__all__ = [
+    "MARKS",
+    "PARAMETERS",
+    "PARAMETER_COLUMNS",
+    "beside_own",
+    "effect",
+    "marks_row",
+    "parameter_table",
+    "table",
+    "ways",
+]
 
 PARAMETERS = {"xi_c": "critical_rolling_displacement", "T_vis": "viscous_time"}
 """Name of what is varied -> attribute of `ratd.Material`, and column of the table."""
@@ -80,6 +94,34 @@ def parameter_table(files):
     return beside_own(table, table["parameter"] == OWN, "its material as it is")
 
 
+def table(files, settings, say):
+    """The table of figure 9, from the files of its runs.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        Marks of the grains spun up in each way.
+    settings : dict
+        ``parameters``: of each file what is varied in it.
+    say : callable
+        Called with a sentence.
+
+    Returns
+    -------
+    dict
+        Name of an output -> what it holds.
+    """
+    opened = [io.read(path, "disruption") for path in files]
+    found = parameter_table(
+        [
+            (parameter, material_of(file), rows(file, "disruption"))
+            for parameter, file in zip(settings["parameters"], opened, strict=True)
+        ]
+    )
+    say(f"{len(found)} runs")
+    return {"parameters": as_dataset(found), "parameters_csv": found}
+
+
 def marks_row(marks):
     """What names a grain and its `MARKS`, dict, from the marks of `ratd.disruption`."""
     return {name: marks.attrs[name] for name in _GRAIN} | {name: float(marks[name]) for name in MARKS}
@@ -140,3 +182,13 @@ def effect(table, parameter, mark):
         for (kind, value), part in here.groupby(["type", PARAMETERS[parameter]])
     ]
     return pd.DataFrame(rows)
+
+
+register(
+    "parameters",
+    Kind(
+        "Grains spun up with other rolling displacements and viscous times",
+        entries(PARAMETER_COLUMNS),
+        references=PAPER,
+    ),
+)

@@ -8,18 +8,20 @@ from dataclasses import replace
 from pathlib import Path
 
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.growth import grow
-from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
+from ratd.experiments.spin_up.grow import grown
+from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.run_files import run_row
+from ratd.experiments.spin_up.spin import told
 from ratd.geometry.box import open_space
 from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline.partial import Block
 
-__all__ = ["first_step", "of_material", "spin_up_ways", "steps_to", "way_material"]
+__all__ = ["calibrate", "first_step", "of_material", "spin_up_ways", "steps_to", "vary", "way_material"]
 
 
 def of_material(grain, **changed):
@@ -70,11 +72,11 @@ def spin_up_ways(job, targets, ways, kind, row, *, law=None):
     targets : list of path-like
         The files.
     ways : list of dict
-        One a file: ``grain`` (material, type, a_eff, radii, migration, from `ratd.pipeline.config.Plan.grow`),
-        ``changed`` (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments
-        of `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
+        One a file: ``grain`` (material, type, a_eff, radii, migration, from `Settings.grow` of the plan), ``changed``
+        (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments of
+        `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
     kind : str
-        Kind of the files, a key of `ratd.pipeline.schema.KINDS`.
+        Kind of the files.
     row : callable
         Makes the row of a grain in such a file from the run that `ratd.spin_up` returns.
     law : part, optional
@@ -89,24 +91,22 @@ def spin_up_ways(job, targets, ways, kind, row, *, law=None):
     def make(waiting, done):
         for number, (block, seed) in enumerate(waiting):
             way = of_target[str(block.target)]
-            grain = of_material(_grown(way["grain"], seed), **way["changed"])
+            grain = of_material(grown(way["grain"], seed), **way["changed"])
             how = way["spin_up"]
             if "reach" in way:
                 acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
                 how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
-            progress = job.progress(seed, f"{block.target.stem} ")
+            progress = told(job.progress(f"{block.target.stem} seed {seed}"))
             done(number, row(spin_up(grain, law=law, checkpoint=block.checkpoint(seed), progress=progress, **how)))
 
     job.blocks(blocks, kind, make)
 
 
-def _grown(settings, seed):
-    """The grain of a seed, as the ensemble has it."""
-    return grow(
-        settings["type"],
-        settings["a_eff"],
-        Material(**settings["material"]),
-        seed,
-        distribution=RadiusDistribution(**settings["radii"]),
-        migration=settings["migration"],
-    )
+def vary(job):
+    """Spin up the same grains in several ways, and keep their marks: a stage of the pipeline."""
+    spin_up_ways(job, job.output, job.settings, "disruption", disruption)
+
+
+def calibrate(job):
+    """Spin up the grains of the calibration, and keep their runs: a stage of the pipeline."""
+    spin_up_ways(job, job.output, job.settings, "spinup", run_row)

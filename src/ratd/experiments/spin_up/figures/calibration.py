@@ -3,9 +3,10 @@
 import numpy as np
 
 from ratd.base.errors import InputError
-from ratd.base.markdown import plural
-from ratd.experiments.spin_up.calibration import MARKS, ONSET, PRINTED_STEP, same_rate
+from ratd.base.words import plural
+from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES, MARKS, ONSET, PRINTED_STEP, same_rate
 from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, styled
+from ratd.pipeline import io
 
 LOOK = {
     "omega_first_loss": {"color": "#0072B2", "marker": "o", "mfc": "none", "ms": 7},
@@ -87,3 +88,9 @@ def _power(value):
     """An angular acceleration in words."""
     digits, exponent = f"{value:.1e}".split("e")
     return rf"${digits}\times10^{{{int(exponent)}}}$ rad s$^{{-2}}$"
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    file = io.read(files["fit"], "calibration")
+    return calibration(file[list(CALIBRATION_COLUMNS)].to_dataframe(), file[list(FIT_VALUES)])

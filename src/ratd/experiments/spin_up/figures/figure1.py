@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.colors import to_rgb
 
+from ratd.aggregates.files import read_grains
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pictures.spheres import render, show, view_axes
@@ -79,3 +80,9 @@ def _draw(axes, grain, colour):
         rf"$N_\mathrm{{mon}}$ = {grain.n_monomers}, $N_\mathrm{{con}}$ = {grain.n_contacts}"
     )
     axes.text(0.5, -0.02, text, transform=axes.transAxes, ha="center", va="top")
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    grains = [grain for path in files["grains"] for grain in read_grains(path)]
+    return figure1([grain for grain in grains if grain.seed == settings["seed"]])

@@ -1,7 +1,8 @@
 """Fig. 2: what the grown grains are like."""
 
-from ratd.base.markdown import plural
+from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     TWO_COLUMNS,
     drive_of,
@@ -70,3 +71,8 @@ def figure2(table, drive=None):
     for axes in panels[1]:
         axes.set_xlabel(sizes_label())
     return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure2(read_table(files["table"]), drive=settings["drive"])

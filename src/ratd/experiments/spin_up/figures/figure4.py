@@ -3,9 +3,10 @@
 import numpy as np
 
 from ratd.base.errors import InputError
-from ratd.base.markdown import plural
 from ratd.base.units import NM
+from ratd.base.words import plural
 from ratd.experiments.spin_up.marks import LOSS, disruption
+from ratd.experiments.spin_up.run_files import read_runs
 from ratd.pictures.style import (
     GREY,
     HIGHLIGHT,
@@ -131,3 +132,8 @@ def _point_at_peak(axes, runs, marks):
         va="top",
         arrowprops={"arrowstyle": "-|>", "color": "black", "lw": 0.8, "shrinkA": 0, "shrinkB": 1, "relpos": (start, 0)},
     )
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure4([run for path in files["runs"] for run in read_runs(path)], drive=settings["drive"])

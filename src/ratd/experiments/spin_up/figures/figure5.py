@@ -5,6 +5,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.run_files import run_of_seed
 from ratd.pictures.snapshots import (
     FARTHEST,
     FORCES,
@@ -88,3 +89,8 @@ def figure5(run, mark=None, drive=None):
     bar = figure.colorbar(bar, ax=panels, location="bottom", shrink=0.8, aspect=30, pad=0.01, extend="both")
     bar.set_label(r"normal force $F_\mathrm{N}$ of greatest magnitude [nN], > 0 pushing")
     return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure5(run_of_seed(files["runs"], settings["seed"]), drive=settings["drive"])

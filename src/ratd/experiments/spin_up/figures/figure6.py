@@ -4,9 +4,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from ratd.base.markdown import plural
 from ratd.base.units import NM
+from ratd.base.words import plural
 from ratd.experiments.spin_up.oblateness import oblate_counts
+from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,
@@ -130,3 +131,8 @@ def axis_ratios(table, when):
     """
     a, b, c = (table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc")
     return np.array([b / a, c / b])
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure6(read_table(files["table"]), settings["material"], settings["sizes"], drive=settings["drive"])

@@ -4,10 +4,12 @@ import numpy as np
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 
-from ratd.base.markdown import plural
-from ratd.base.materials import get_material
+from ratd.base.materials import Material, get_material
+from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
-from ratd.experiments.spin_up.eq33 import PAPER_MEAN_RADIUS, TABLE_3, eq33, radius_of_reading
+from ratd.experiments.spin_up.eq33 import eq33, radius_of_reading
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
+from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
 from ratd.pictures.style import (
     GREY,
     ONE_COLUMN,
@@ -142,4 +144,15 @@ def _legend(figure, style, n_grown, wide):
         handlelength=4.5,
         loc="outside lower center",
         ncols=3 if wide else 1,
+    )
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure7(
+        read_table(files["table"]),
+        read_fit(files["fit"]),
+        drive=settings["drive"],
+        materials={name: Material(**constants) for name, constants in settings["materials"].items()},
+        grown=read_grown(files["grown"]),
     )

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from ratd.base.markdown import plural
-from ratd.base.materials import get_material
+from ratd.base.materials import Material, get_material
 from ratd.base.units import NM
+from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
+from ratd.experiments.spin_up.run_files import read_grown, read_table
 from ratd.experiments.spin_up.tensile import SCALINGS, predictions
 from ratd.pictures.style import (
     GREY,
@@ -86,3 +87,10 @@ def figure8(table, material="co-S", kind="BAM2", scaled_at=100e-9, drive=None, m
     axes.set_xlim(*nanometres(size_limits(cells["a_eff"])))
     figure.legend(loc="outside lower center", ncols=1, title=f"lines: for {plural(len(grown), 'grown grain')}")
     return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    materials = {name: Material(**constants) for name, constants in settings["materials"].items()}
+    which = settings["material"], settings["type"], settings["scaled_at"], settings["drive"]
+    return figure8(read_table(files["table"]), *which, materials, read_grown(files["grown"]))

@@ -5,10 +5,11 @@ from matplotlib import colormaps
 from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
-from ratd.base.markdown import plural
 from ratd.base.units import NM, PS
+from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics, size_key
 from ratd.experiments.spin_up.parameters import MARKS, OWN, PARAMETERS, effect
+from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.pictures.style import (
     GREY,
     TWO_COLUMNS,
@@ -22,14 +23,13 @@ from ratd.pictures.style import (
     styled,
     type_style,
 )
+from ratd.pipeline import io
 
 AXIS = {
     "xi_c": (NM, r"critical rolling displacement $\xi_\mathrm{c}$ [nm]", "{:g} nm"),
     "T_vis": (PS, r"viscous time $T_\mathrm{vis}$ [ps]", "{:g} ps"),
 }
 """Parameter -> unit of its axis [SI], label, text of a value."""
-PAPER_EFFECT = (9 * PS, 1.11)
-"""T_vis [s] and omega_disr over that at 5 ps, of a-C BAM2, as the paper states it (Sect. 7.5)."""
 LINES = ((0, (4, 2)), (0, (1, 1.2)), "-")
 """Lines of the types in their order; the paper has dashed BA and dotted BAM2."""
 OWN_COLOUR = "black"
@@ -137,8 +137,13 @@ def _against_value(axes, table, parameter, style, lines):
                 ls=lines[kind] if mark == MARKS[0] else "none", mfc=MARK_FACE[mark],
             )  # fmt: skip
     if parameter == "T_vis":
-        axes.plot(PAPER_EFFECT[0] / PS, PAPER_EFFECT[1], ls="none", **STATED)
+        axes.plot(VISCOUS_EFFECT[0] / PS, VISCOUS_EFFECT[1], ls="none", **STATED)
     if logarithm:
         axes.set_xscale("log")
         logarithmic(axes.xaxis)
     axes.set_xlabel(label)
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure9(io.read(files["table"], "parameters").to_dataframe())

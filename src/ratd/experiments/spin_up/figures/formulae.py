@@ -4,10 +4,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
-from ratd.base.markdown import plural
+from ratd.base.words import plural
 from ratd.experiments.spin_up.formulae import OWN, formula_effects
 from ratd.experiments.spin_up.parameters import MARKS
 from ratd.pictures.style import TWO_COLUMNS, drive_of, drive_text, new_figure, styled, type_style
+from ratd.pipeline import io
 
 TEXT = {
     "sliding_stiffness": "sliding stiffness\n$G^*=G/(2-2\\nu^2)$",
@@ -63,3 +64,8 @@ def formulae(table):
     handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in looks.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return formulae(io.read(files["table"], "formulae").to_dataframe())

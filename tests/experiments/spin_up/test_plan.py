@@ -1,0 +1,430 @@
+"""The config: what is refused, with which words, and what follows from what is accepted."""
+
+import re
+
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, check, load
+from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.seeds import size_label
+from ratd.pipeline import config as configs
+from ratd.pipeline.config import merge
+from tiny_pipeline import ROOT
+
+PACE = {"angular_acceleration": 1e15, "timestep_factor": 0.1}
+"""Of a run of the calibration."""
+DEFAULT, QUICK = (ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml"), ROOT / "config" / "quick.yaml"
+SHARED = ("results", "materials_file")
+
+
+@pytest.fixture(autouse=True)
+def in_root(monkeypatch):
+    monkeypatch.chdir(ROOT)
+
+
+def with_changes(changes):
+    """Plan of the config as it comes, with keys of the spin-up replaced, or shared ones."""
+    shared = {key: changes[key] for key in SHARED if key in changes}
+    own = {key: value for key, value in changes.items() if key not in SHARED}
+    return check(merge(configs.load(*DEFAULT), shared | {"spin_up": own}))
+
+
+def test_default_is_the_full_paper():
+    plan = load(*DEFAULT)
+    assert len(plan.cells) * len(plan.seeds) == 2970
+    assert plan.config["materials"] == ["a-C", "q-S", "co-S"]
+    assert plan.sizes == [str(size) for size in range(550, 0, -50)]
+    assert plan.config["drives"] == ["prescribed"]
+    assert plan.figures == list(FIGURES) and plan.common_figures == list(COMMON_FIGURES)
+
+
+def test_quick_is_three_of_each():
+    plan = load(*DEFAULT, QUICK)
+    assert (len(plan.config["materials"]), len(plan.config["types"]), len(plan.sizes), len(plan.seeds)) == (3, 3, 3, 3)
+    assert plan.results != load(*DEFAULT).results
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "allowed"),
+    [
+        ({"materials": ["x-S"]}, "materials[0] is 'x-S'", "a-C, q-S"),
+        ({"materials": []}, "materials is []", "at least one"),
+        ({"materials": "q-S"}, "materials is 'q-S'", "a list"),
+        ({"types": ["BA", "BAM3"]}, "types[1] is 'BAM3'", "BA, BAM1 or BAM2"),
+        ({"sizes_nm": [50, -50]}, "sizes_nm[1] is -50", "above 0"),
+        ({"sizes_nm": [0]}, "sizes_nm[0] is 0", "above 0"),
+        ({"types": ["BA"], "sizes_nm": [12]}, "sizes_nm[0] is 12", "above 12.6 nm"),
+        ({"sizes_nm": [50, 5000]}, "sizes_nm[1] is 5000", "at most 4089 nm"),
+        ({"growth": {"sigma_ln": 3.0}}, "growth.sigma_ln is 3.0", "at most 2.5"),
+        (
+            {"literal": {"angular_acceleration": "1.25e14"}},
+            "is '1.25e14' (text for YAML; as a number it is written 125000000000000.0)",
+            "allowed: a number above 0",
+        ),
+        ({"literal": {"angular_acceleration": "1e22"}}, "as a number it is written 1.0e+22", "a number above 0"),
+        ({"literal": {"angular_acceleration": "nan"}}, "angular_acceleration is 'nan'; allowed", "a number above 0"),
+        ({"sizes_nm": [50, 50]}, "sizes_nm is [50, 50]", "different"),
+        ({"sizes_nm": [float("nan")]}, "sizes_nm[0] is nan", "finite"),
+        ({"block_size": 0}, "block_size is 0", "1 or more"),
+        ({"block_size": 10.0}, "block_size is 10.0", "whole number"),
+        ({"small_grains": {"up_to_nm": 200, "block_size": 0}}, "small_grains.block_size is 0", "1 or more"),
+        ({"block_size": True}, "block_size is True", "whole number"),
+        ({"seeds": {"number": 0}}, "seeds.number is 0", "1 or more"),
+        ({"seeds": {"first": -1}}, "seeds.first is -1", "0 or more"),
+        ({"seeds": {"fewer": [{"number": -1}]}}, "seeds.fewer[0].number is -1", "0 or more"),
+        ({"seeds": {"fewer": [{"number": 31}]}}, "seeds.fewer[0].number is 31", "0 to 30"),
+        ({"seeds": {"fewer": [{"types": ["BA"]}]}}, "seeds.fewer[0].number is missing", "0 or more"),
+        ({"seeds": {"fewer": [{"size": [50], "number": 1}]}}, "the key 'size' in spin_up.seeds.fewer[0]", "sizes_nm"),
+        ({"seeds": {"fewer": [{"sizes_nm": [75], "number": 1}]}}, "seeds.fewer[0].sizes_nm[0] is 75", "550"),
+        ({"seeds": {"fewer": [{"drives": ["literal"], "number": 1}]}}, "seeds.fewer[0].drives[0]", "prescribed"),
+        ({"seeds": {"fewer": [{"number": 0}]}, "snapshots": {"grains": []}}, "fewer leaves no grain", "at least one"),
+        (
+            {"seeds": {"fewer": [{"types": ["BAM2"], "number": 0}]}, "snapshots": {"grains": []}},
+            "figures.figure4 is a cell that seeds.fewer leaves out",
+            "or null",
+        ),
+        (
+            {"seeds": {"fewer": [{"sizes_nm": [500], "number": 0}]}},
+            "snapshots.grains[0].seed is 0",
+            "seeds.fewer leaves the cell out",
+        ),
+        (
+            {
+                "drives": ["prescribed", "literal"],
+                "seeds": {"first": 3, "fewer": [{"drives": ["literal"], "number": 2}]},
+            }
+            | {
+                "snapshots": {"grains": [{"material": "q-S", "type": "BAM2", "size_nm": 500, "seed": 6}]},
+                "figures": {"figure1": None, "figure5": {"seed": 6}},
+            },
+            "figures.figure5.seed (drive literal) is 6",
+            "3 to 4",
+        ),
+        ({"seed": 3}, "the key 'seed' in spin_up is unknown", "seeds"),
+        ({"run": {"epsilom": 1}}, "the key 'epsilom' in spin_up.run is unknown", "epsilon"),
+        ({"run": {"epsilon": "1e-2"}}, "spin_up.run.epsilon is '1e-2'", "a number above 0"),
+        ({"run": {"epsilon": 0}}, "spin_up.run.epsilon is 0", "above 0"),
+        ({"run": {"epsilon": {"BAM2": 2}}}, "spin_up.run.epsilon.BAM2 is 2", "above 0 and at most 1"),
+        ({"run": {"epsilon": {"BAM3": 0.1}}}, "the key 'BAM3' in spin_up.run.epsilon is unknown", "BA, BAM1, BAM2"),
+        ({"literal": {"epsilon": {"BA": 0.1}, "angular_acceleration": None}, "drives": ["literal"]}, "BAM1", "null"),
+        ({"run": None}, "spin_up.run is None", "a mapping"),
+        ({"run": {"angular_acceleration": 1e14}}, "run give {'epsilon': 0.02, 'angular", "null for the other"),
+        ({"drives": ["literal"], "literal": {"angular_acceleration": None}}, "run and literal together", "null"),
+        ({"drives": ["torque"]}, "drives[0] is 'torque'", "prescribed"),
+        ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
+        ({"snapshots": {"grains": [{"material": "q-S"}]}}, "snapshots.grains[0].type is missing", "BA, BAM1"),
+        (
+            {"snapshots": {"grains": [{"material": "q-S", "type": "BA", "size_nm": 50, "seed": 30}]}},
+            "snapshots.grains[0].seed is 30",
+            "0 to 29",
+        ),
+        ({"figures": {"figure4": {"size_nm": 75}}}, "figures.figure4.size_nm is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"figure6": {"material": "ice"}}}, "figures.figure6.material is 'ice'", "a-C, q-S, co-S"),
+        ({"figures": {"figure5": {"seed": 3}}}, "figures.figure5 is", "one of snapshots.grains"),
+        ({"figures": {"figure1": {"seed": 99}}}, "figures.figure1.seed is 99", "0 to 29"),
+        ({"figures": {"figure8": {"scaled_at_nm": 75}}}, "figures.figure8.scaled_at_nm is 75", "the sizes_nm, 50"),
+        ({"figures": {"figure10": {"damped": {"epsilon": 2}}}}, "figures.figure10.damped.epsilon is 2", "at most 1"),
+        (
+            {"figures": {"figure9": {"types": ["BAM1"], "material": "ice"}}},
+            "figures.figure9.material is 'ice'",
+            "a-C, q-S",
+        ),
+        ({"figures": {"figure9": {"sizes_nm": [75]}}}, "figures.figure9.sizes_nm[0] is 75", "one of the sizes_nm, 50"),
+        ({"figures": {"figure9": {"T_vis_ps": [0]}}}, "figures.figure9.T_vis_ps[0] is 0", "above 0"),
+        (
+            {"figures": {"figure9": {"literal": {"sizes_nm": [100, 75]}}}},
+            "figures.figure9.literal.sizes_nm[1] is 75",
+            "one of the sizes_nm, 50",
+        ),
+        (
+            {"figures": {"figure9": {"literal": {"timestep_factor": 2}}}},
+            "figures.figure9.literal.timestep_factor is 2",
+            "at most 1",
+        ),
+        ({"figures": {"calibration": {"size_nm": 75}}}, "figures.calibration.size_nm is 75", "one of the sizes_nm, 50"),
+        (
+            {"figures": {"formulae": {"sizes_nm": [75]}}},
+            "figures.formulae.sizes_nm[0] is 75",
+            "one of the sizes_nm, 50",
+        ),
+        ({"figures": {"formulae": {"types": ["RA"]}}}, "figures.formulae.types[0] is 'RA'", "BA, BAM1 or BAM2"),
+        ({"figures": {"calibration": {"reach": 0}}}, "figures.calibration.reach is 0", "above 0"),
+        (
+            {"figures": {"calibration": {"runs": [{"angular_acceleration": 1e15}]}}},
+            "the key spin_up.figures.calibration.runs[0].timestep_factor is missing",
+            "at most 1",
+        ),
+        (
+            {"figures": {"calibration": {"runs": [PACE, PACE | {"reach": 0.8}]}}},
+            "figures.calibration.runs[1] has the angular_acceleration and timestep_factor of an earlier one",
+            "each pair once",
+        ),
+        ({"figures": {"calibration": {"runs": [PACE | {"reach": 0}]}}}, "calibration.runs[0].reach is 0", "above 0"),
+        ({"ensemble": {"mean_monomer_radius_nm": ["mine"]}}, "ensemble.mean_monomer_radius_nm[0]", "the word own"),
+        ({"results": ""}, "results is ''", "a folder"),
+        ({"materials_file": "config/none.yaml"}, "config/none.yaml", "No such file"),
+    ],
+)
+def test_what_is_wrong_is_named_in_one_sentence(changes, key, allowed):
+    with pytest.raises(InputError) as error:
+        with_changes(changes)
+    message = str(error.value)
+    assert key in message and allowed in message
+    assert "\n" not in message
+
+
+def test_missing_key_is_named():
+    config = configs.load(*DEFAULT)
+    with pytest.raises(InputError, match="the key spin_up is missing; allowed: a mapping"):
+        check({key: config[key] for key in SHARED})
+    del config["spin_up"]["block_size"]
+    with pytest.raises(InputError, match="the key spin_up.block_size is missing; allowed: a whole number"):
+        check(config)
+
+
+def test_text_that_is_not_yaml_is_named_with_its_line(tmp_path):
+    file = tmp_path / "broken.yaml"
+    file.write_text("materials: [a-C\ntypes: [BA]\n")
+    with pytest.raises(InputError, match=r"broken.yaml: line 2: is not YAML"):
+        load(file)
+
+
+def test_a_file_that_is_no_mapping_is_named(tmp_path):
+    file = tmp_path / "list.yaml"
+    file.write_text("- a-C\n")
+    with pytest.raises(InputError, match="list.yaml: is .* a mapping"):
+        load(*DEFAULT, file)
+
+
+def test_later_files_stand_over_earlier_ones_key_by_key():
+    merged = merge({"a": {"b": 1, "c": [1, 2]}, "d": 1}, {"a": {"c": [3]}, "e": 2})
+    assert merged == {"a": {"b": 1, "c": [3]}, "d": 1, "e": 2}
+
+
+def test_blocks_cover_all_seeds_once_and_keep_their_bounds_when_seeds_are_added():
+    plan = with_changes(
+        {
+            "seeds": {"first": 5, "number": 7},
+            "block_size": 3,
+            "snapshots": {"grains": []},
+            "figures": {"figure1": None, "figure5": None},
+        }
+    )
+    assert plan.blocks() == ["5-7", "8-10", "11-11"]
+    more = with_changes(
+        {
+            "seeds": {"first": 5, "number": 12},
+            "block_size": 3,
+            "snapshots": {"grains": []},
+            "figures": {"figure1": None, "figure5": None},
+        }
+    )
+    assert more.blocks()[:2] == plan.blocks()[:2]
+    assert with_changes({"block_size": 1}).blocks()[-1] == "29-29"
+    assert with_changes({"block_size": 100}).blocks() == ["0-29"]
+
+
+def test_small_grains_have_blocks_of_their_own():
+    changes = {"block_size": 10, "small_grains": {"up_to_nm": 200, "block_size": 20}}
+    plan = with_changes(changes)
+    assert plan.blocks(("q-S", "BA", "200")) == ["0-19", "20-29"]
+    assert plan.blocks(("q-S", "BA", "250")) == ["0-9", "10-19", "20-29"]
+    assert plan.grown_block(("q-S", "BA", "200"), "20-29") == "20-29"
+    assert re.fullmatch(plan.pattern("blocks"), "0-19") and re.fullmatch(plan.pattern("blocks"), "10-19")
+    assert with_changes(changes | {"small_grains": None}).blocks(("q-S", "BA", "200")) == ["0-9", "10-19", "20-29"]
+
+
+FEWER = {
+    "small_grains": None,
+    "drives": ["prescribed", "literal"],
+    "seeds": {
+        "number": 12,
+        "fewer": [
+            {"types": ["BA"], "sizes_nm": [500, 550], "number": 3},
+            {"drives": ["literal"], "sizes_nm": [100, 500, 550], "number": 1},
+            {"types": ["BA"], "sizes_nm": [550], "number": 0},
+        ],
+    },
+}
+
+
+def test_later_entries_of_fewer_stand_over_earlier_ones():
+    plan = with_changes(FEWER)
+    numbers = {
+        (drive, size): len(plan.seeds_of(("q-S", "BA", size), drive))
+        for drive in ("prescribed", "literal")
+        for size in ("550", "500", "100", "50")
+    }
+    prescribed = {"550": 0, "500": 3, "100": 12, "50": 12}
+    literal = {"550": 0, "500": 1, "100": 1, "50": 12}
+    assert numbers == {("prescribed", size): n for size, n in prescribed.items()} | {
+        ("literal", size): n for size, n in literal.items()
+    }
+    assert len(plan.seeds_of(("a-C", "BAM2", "550"), "literal")) == 1
+
+
+def test_grains_are_grown_for_the_drive_that_wants_most_and_shared():
+    plan = with_changes(FEWER)
+    cell = ("q-S", "BA", "500")
+    assert plan.blocks(cell, "prescribed") == ["0-2"] and plan.blocks(cell, "literal") == ["0-0"]
+    assert plan.blocks(cell) == ["0-2"] and plan.grown_block(cell, "0-0") == "0-2"
+    assert plan.blocks(("q-S", "BA", "50"), "literal") == ["0-9", "10-11"]
+    path = "{material}/{type}/{size}/{seeds}"
+    assert len(plan.files(path, "prescribed")) == 3 * (3 * 9 * 2 + 2 * 2 * 2 + 1)
+    assert len(plan.files(path)) == len(plan.files(path, "prescribed"))
+    # of BAM1 and BAM2 at 500 and 550 nm, and of all at 100 nm, literal needs the first block only
+    assert len(plan.grown_files(path, "literal")) == 3 * (3 * 8 * 2 + 3 + 2 * 2 + 1)
+    assert "q-S/BA/500/0-2" in plan.grown_files(path, "literal")
+    assert not [name for name in plan.files(path) if "/BA/550/" in name]
+    assert set(plan.pattern("blocks").split("|")) == {"0\\-9", "10\\-11", "0\\-2", "0\\-0"}
+
+
+def test_figure_1_grows_what_nothing_else_needs():
+    plan = with_changes(FEWER | {"figures": {"figure1": {"sizes_nm": [550]}}})
+    assert "q-S/BA/550/0-9" in plan.figure1_files("{material}/{type}/{size}/{seeds}")
+
+
+def test_fewer_seeds_leave_the_jobs_of_other_cells_alone():
+    plan, all_seeds = with_changes(FEWER), with_changes({"drives": FEWER["drives"], "seeds": {"number": 12}})
+    cell = ("q-S", "BAM2", "350")
+    assert plan.blocks(cell, "prescribed") == all_seeds.blocks(cell, "prescribed") == ["0-9", "10-11"]
+    assert plan.spin_up("prescribed", *cell, "0-9") == all_seeds.spin_up("prescribed", *cell, "0-9")
+    assert plan.grow(*cell) == all_seeds.grow(*cell)
+
+
+def test_settings_hold_what_a_stage_depends_on_and_nothing_else():
+    plan = load(*DEFAULT)
+    other = with_changes({"run": {"epsilon": 0.05}, "figures": {"figure6": {"sizes_nm": [50]}}})
+    assert other.grow("q-S", "BA", "50") == plan.grow("q-S", "BA", "50")
+    assert other.spin_up("prescribed", "q-S", "BA", "50", "0-9") != plan.spin_up("prescribed", "q-S", "BA", "50", "0-9")
+    assert other.ensemble("prescribed") == plan.ensemble("prescribed")
+    assert other.figure("figure7", "prescribed") == plan.figure("figure7", "prescribed")
+    assert other.figure("figure6", "prescribed") != plan.figure("figure6", "prescribed")
+
+
+def test_settings_are_in_si_units():
+    settings = load(*DEFAULT).grow("q-S", "BA", "350")
+    assert settings["a_eff"] == pytest.approx(350e-9, rel=1e-15)
+    assert settings["radii"]["median"] == pytest.approx(20e-9, rel=1e-15)
+    assert settings["material"]["surface_energy"] == MATERIALS["q-S"].surface_energy
+
+
+def test_drives_have_spin_up_laws_of_their_own():
+    plan = with_changes({"drives": ["prescribed", "literal"]})
+    prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
+    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (EPSILON["BA"], None)
+    assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1.25e14)
+    assert prescribed["records"] == literal["records"]
+
+
+def test_figure9_has_a_pace_of_its_own_for_each_drive():
+    own = {"epsilon": 0.03, "timestep_factor": 0.01, "literal": {"angular_acceleration": 3e13, "timestep_factor": 0.04}}
+    plan = with_changes({"drives": ["prescribed", "literal"], "figures": {"figure9": own}})
+    laws = {drive: plan.parameters(drive, "BA", "100")[0]["spin_up"] for drive in ("prescribed", "literal")}
+    names = ("epsilon", "angular_acceleration", "timestep_factor")
+    assert [laws["prescribed"][name] for name in names] == [0.03, None, 0.01]
+    assert [laws["literal"][name] for name in names] == [None, 3e13, 0.04]
+
+
+def test_figure9_may_have_sizes_of_its_own_for_the_literal_drive():
+    def sizes(literal, drive):
+        own = {"sizes_nm": [100, 150], "literal": literal}
+        plan = with_changes({"drives": ["prescribed", "literal"], "figures": {"figure9": own}})
+        files = plan.parameter_files("{drive} {type} {size} {label}", drive)
+        assert len(files) == len(set(files)) and {file.split()[0] for file in files} == {drive}
+        assert "sizes_nm" not in plan.parameters(drive, "BA", "100")[0]["spin_up"]
+        return list(dict.fromkeys(file.split()[2] for file in files))
+
+    assert sizes({}, "prescribed") == sizes({}, "literal") == ["100", "150"]
+    assert sizes({"sizes_nm": [50]}, "prescribed") == ["100", "150"]
+    assert sizes({"sizes_nm": [50]}, "literal") == ["50"]
+
+
+def test_the_literal_paces_of_the_config_have_one_ratio():
+    """Only d omega/dt over the step counts (docs/model/drives.md), so the ensemble and figure 9 are of one ratio."""
+    config = load(*DEFAULT).config
+    first, second = config["literal"], config["figures"]["figure9"]["literal"]
+    ratio = first["angular_acceleration"] / first["timestep_factor"]
+    assert second["angular_acceleration"] / second["timestep_factor"] == pytest.approx(ratio)
+
+
+def test_a_run_of_the_calibration_may_have_seeds_and_an_end_of_its_own():
+    other = PACE | {"timestep_factor": 0.2, "seeds": {"first": 3, "number": 2}, "reach": 0.5}
+    plan = with_changes({"figures": {"calibration": {"runs": [PACE, other]}}})
+    own = plan.config["figures"]["calibration"]
+    common, special = (plan.calibration_runs(label)[0] for label in plan.calibration_labels)
+    assert (common["seeds"], common["reach"]) == (list(range(own["seeds"]["number"])), own["reach"])
+    assert (special["seeds"], special["reach"], special["spin_up"]["timestep_factor"]) == ([3, 4], 0.5, 0.2)
+    assert not {"seeds", "reach"} & set(special["spin_up"])
+    assert special["grain"] == common["grain"]
+
+
+def test_epsilon_is_one_for_all_types_or_one_for_each():
+    each, same = load(*DEFAULT), with_changes({"run": {"epsilon": 0.05}})
+    for kind, epsilon in EPSILON.items():
+        assert each.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == epsilon
+        assert same.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == 0.05
+    assert each.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
+    assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1.25e+14 rad/s²"
+    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.005 (BAM2)"
+
+
+def test_snapshots_concern_the_block_of_the_grain_only():
+    plan = load(*DEFAULT)
+    assert plan.spin_up("prescribed", "q-S", "BAM2", "500", "0-9")["snapshot_seeds"] == [0]
+    for cell in (("q-S", "BAM2", "500", "10-19"), ("q-S", "BAM1", "500", "0-9"), ("a-C", "BAM2", "500", "0-9")):
+        settings = plan.spin_up("prescribed", *cell)
+        assert settings["snapshot_seeds"] == [] and settings["snapshot_every"] == 0
+
+
+def test_a_figure_can_be_left_out():
+    plan = with_changes({"figures": {"figure4": None}})
+    assert plan.figures == [name for name in FIGURES if name != "figure4"]
+    assert plan.figure4_files("{material}/{seeds}") == []
+    assert load(*DEFAULT).figure4_files("{material}/{size}/{seeds}")[0] == "q-S/350/0-9"
+
+
+@pytest.mark.parametrize(("size", "label"), [(50, "50"), (50.0, "50"), (62.5, "62.5")])
+def test_sizes_stand_in_names_without_needless_digits(size, label):
+    assert size_label(size) == label
+
+
+MATERIALS_OF_FIGURES = ("a-C", "q-S", "co-S")
+
+
+def materials_file(tmp_path, text):
+    file = tmp_path / "materials.yaml"
+    file.write_text(text)
+    return {"materials_file": str(file)}
+
+
+def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
+    snow = "snow: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
+    half = "half: {mix: {snow: 0.5, q-S: 0.5}}\n"
+    plan = with_changes(materials_file(tmp_path, snow + half) | {"materials": ["snow", "half", *MATERIALS_OF_FIGURES]})
+    assert plan.material("snow")["youngs_modulus"] == pytest.approx(7e9)
+    assert plan.material("snow")["viscous_time"] == MATERIALS["a-C"].viscous_time
+    assert plan.material("half")["density"] == pytest.approx((1000 + 2650) / 2)
+    assert plan.materials["q-S"] == MATERIALS["q-S"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
+        ("a/b: {mix: {a-C: 1.0}}\n", "'a/b'; allowed: a name of letters"),
+        ("snow: {density_kg_m3: 1000}\n", "snow.surface_energy_mJ_m2 is missing; allowed: a number"),
+        ("snow: {mix: {a-C: 0.4}}\n", "add up to 1"),
+        ("snow: {mix: {b-C: 1.0}}\n", "b-C"),
+        ("snow: {mix: {a-C: 1.0}, density_kg_m3: 5}\n", "with the one key mix"),
+        ("snow: {gamma: 1}\n", "the key 'gamma' in snow is unknown"),
+        ("snow: 5\n", "snow is 5; allowed: a mapping"),
+    ],
+)
+def test_what_is_wrong_with_a_material_is_named_with_the_file(tmp_path, text, said):
+    with pytest.raises(InputError) as error:
+        with_changes(materials_file(tmp_path, text))
+    assert said in str(error.value) and "materials.yaml" in str(error.value)
+    assert "\n" not in str(error.value)

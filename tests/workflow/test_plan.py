@@ -1,0 +1,60 @@
+"""What the pipeline plans, and what it refuses, before any job."""
+
+import re
+
+import pytest
+
+from tiny_pipeline import TINY, Pipeline
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"materials": ["x-S"]}, "spin_up.materials[0] is 'x-S'; allowed: a-C"),
+        ({"types": ["BAM9"]}, "spin_up.types[0] is 'BAM9'; allowed: BA, BAM1 or BAM2"),
+        ({"sizes_nm": [-50]}, "spin_up.sizes_nm[0] is -50; allowed: "),
+        ({"sizes_nm": [12]}, "spin_up.sizes_nm[0] is 12; allowed: above 12.6 nm"),
+        ({"block_size": 0}, "spin_up.block_size is 0; allowed: a whole number of 1 or more"),
+        ({"blocksize": 5}, "the key 'blocksize' in spin_up is unknown; allowed: "),
+    ],
+)
+def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, said):
+    pipeline = Pipeline(tmp_path)
+    pipeline.write_config(TINY | change)
+    done = pipeline.run()
+    assert done.returncode != 0
+    # before it stand remarks of Snakemake, which profile and which config files it uses
+    *remarks, sentence = [line for line in done.stdout.splitlines() if line]
+    assert sentence.startswith(f"config: {said}")
+    assert len(remarks) == 3 and "rror" not in "".join(remarks)
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    pipeline.write_config(TINY)
+    config = tmp_path / "config" / "spin_up.yaml"
+    config.write_text(config.read_text().replace("block_size: 10\n", "block_size: [10\n"))
+    done = pipeline.run()
+    *_, sentence = [line for line in done.stdout.splitlines() if line]
+    assert done.returncode != 0
+    assert re.match(r"config/spin_up.yaml: line \d+: is not YAML", sentence)
+
+
+@pytest.mark.parametrize(("fewer", "jobs"), [({"drives": ["literal"], "number": 2}, {"grown": 1}), ({"number": 2}, {})])
+def test_figures_show_all_grown_grains_if_these_are_grown_anyway(tmp_path, fewer, jobs):
+    """One drive of two leaves some out; where both do, no grain is grown for a figure."""
+    pipeline = Pipeline(tmp_path)
+    seeds = {"first": 0, "number": 4, "fewer": [fewer]}
+    pipeline.write_config(TINY | {"drives": ["prescribed", "literal"], "seeds": seeds, "block_size": 2})
+    planned = pipeline.planned("results/tiny/figures/figure7_literal.png", "results/tiny/figures/figure8_literal.png")
+    assert {rule: n for rule, n in planned.items() if rule == "grown"} == jobs
+    assert planned["grow"] == (4 if jobs else 2)
+
+
+def test_full_paper_is_planned(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    (tmp_path / "tiny.yaml").write_text("{}\n")
+    planned = pipeline.planned()
+    # 4 sizes up to 200 nm, 30 seeds a job, and 7 larger ones, 10 seeds a job
+    assert planned["grow"] == planned["spin_up"] == 9 * (4 + 7 * 3) and planned["disrupt"] == 99

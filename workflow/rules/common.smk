@@ -1,0 +1,56 @@
+# What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
+import sys
+from pathlib import Path
+
+from snakemake.utils import min_version
+
+from ratd.base.errors import InputError
+from ratd.experiments.spin_up.plan import check as spin_up_plan
+from ratd.pipeline import jobs
+from ratd.pipeline.config import read_yaml
+from ratd.pipeline.partial import tidy
+from ratd.validation.plan import Checks
+
+min_version("9.27")
+
+jobs.release_stale_locks()
+
+
+def checked(read, *arguments):
+    """What a function gives, or the end of Snakemake with one sentence where it finds the config wrong."""
+    try:
+        return read(*arguments)
+    except InputError as error:
+        sys.exit(str(error))
+
+
+def task(script, function, *writes):
+    """The param that says what is to be done, see `ratd.pipeline.jobs.task`."""
+    return jobs.task(
+        Path(workflow.basedir, "workflow", "scripts", f"{script}.py"), function, *writes
+    )
+
+
+def results_folder(config):
+    """Folder of all results."""
+    return str(Path(config["results"]))
+
+
+def figure_input(name):
+    """Function of the wildcards that gives the files of a figure, by name."""
+    return lambda w: PLAN.figure_input(name, w.get("drive"))
+
+
+def figure_settings(name):
+    """Function of the wildcards that gives the settings of a figure."""
+    return lambda w: PLAN.figure(name, w.get("drive"))
+
+
+def piece_settings(check):
+    """Function of the wildcards that gives the settings of a piece of a check."""
+    return lambda w: CHECKS.pieces[w.extent][check][w.piece]
+
+
+# Snakemake reads these too, but does not say in which line one is no YAML.
+for path in ("config/config.yaml", "config/spin_up.yaml"):
+    checked(read_yaml, path)

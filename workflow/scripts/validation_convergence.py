@@ -1,9 +1,0 @@
-"""Spin one grain up with every setting of the convergence study."""
-
-from ratd.pipeline.jobs import Job
-from ratd.validation.convergence import KIND, compute
-from ratd.validation.tables import write_table
-
-with Job(snakemake) as job:
-    rows = compute(job.settings, progress=job.log.info)
-    write_table(snakemake.output[0], rows, KIND, job.provenance)

@@ -1,9 +1,0 @@
-"""Compute one piece of the check energy."""
-
-from ratd.pipeline.jobs import Job
-from ratd.validation.energy import KIND, compute
-from ratd.validation.tables import write_table
-
-with Job(snakemake) as job:
-    rows = compute(job.settings, progress=job.log.info)
-    write_table(snakemake.output[0], rows, KIND, job.provenance)
