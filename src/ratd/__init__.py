@@ -9,7 +9,8 @@ A grain is grown and spun up until it comes apart:
 
 Any spheres, by any contact law, in open space or in a periodic box:
 
->>> run = ratd.evolve(position, radius, velocity, material="silica", law=ratd.laws.dmt(friction="spring"), duration=1e-8)
+>>> law = ratd.laws.dmt(friction="spring")
+>>> run = ratd.evolve(position, radius, velocity, material="silica", law=law, duration=1e-8)
 """
 
 from importlib import import_module
