@@ -12,15 +12,15 @@ LAYERS = (
     "laws",
     "geometry",
     "engine",
-    "drives",
     "observables",
+    "drives",
     "aggregates",
     "pictures",
     "experiments",
     "validation",
 )
 """Each imports from itself and those before it."""
-COMMON = ("relax",)
+COMMON = ("relax", "evolve")
 """Modules of `experiments` that all experiments may import."""
 LONGEST_MODULE, LONGEST_FUNCTION = 500, 80
 

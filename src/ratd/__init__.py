@@ -1,9 +1,16 @@
-"""ratd: rotational disruption of porous dust aggregates.
+"""ratd: the mechanics of dust aggregates in space, every monomer integrated.
+
+A grain is grown and spun up until it comes apart:
 
 >>> import ratd
 >>> grain = ratd.grow("BAM2", a_eff=200e-9, material="q-S", seed=7)
 >>> run = ratd.spin_up(grain, angular_acceleration=1e14)
 >>> ratd.disruption(run)
+
+Any spheres, by any contact law, in open space or in a periodic box:
+
+>>> law = ratd.laws.dmt(friction="spring")
+>>> run = ratd.evolve(position, radius, velocity, material="silica", law=law, duration=1e-8)
 """
 
 from importlib import import_module
@@ -17,12 +24,15 @@ _HOME = {
     "Material": "base.materials",
     "cut_bound": "experiments.spin_up.cut_bound",
     "disruption": "experiments.spin_up.marks",
+    "evolve": "experiments.evolve",
     "fit_ensemble": "experiments.spin_up.eq33",
     "grow": "aggregates.growth",
     "mix": "base.materials",
+    "open_space": "geometry.box",
+    "periodic": "geometry.box",
     "spin_up": "experiments.spin_up.run",
 }
-__all__ = sorted(_HOME)
+__all__ = sorted([*_HOME, "laws"])
 
 
 def __getattr__(name):
@@ -30,6 +40,8 @@ def __getattr__(name):
         value = getattr(import_module(f"ratd.{_HOME[name]}"), name)
         globals()[name] = value
         return value
+    if name == "laws":
+        return import_module("ratd.laws")
     raise AttributeError(f"module 'ratd' has no attribute {name!r}")
 
 

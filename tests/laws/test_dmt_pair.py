@@ -6,7 +6,7 @@ import pytest
 from ratd.base.materials import MATERIALS
 from ratd.experiments.evolve import evolve
 from ratd.laws import dmt
-from ratd.laws.dmt_with_friction import (
+from ratd.laws.derjaguin_muller_toporov import (
     adhesion_force,
     breaking_energy,
     equilibrium_overlap,

@@ -251,7 +251,7 @@ class DMT:
         n_m = (n_0 + n) / np.linalg.norm(n_0 + n)
         d_m = pair.r_i + pair.r_j - (delta_0 + delta) / 2
         for mode, rate in self.rates(pair, d_m, n_m, v, w_i, w_j).items():
-            before, (k, limit, strength) = np.dot(state[mode], state[mode]), new[mode]
+            before, (k, limit, _) = np.dot(state[mode], state[mode]), new[mode]
             if mode == "twisting":
                 z = state[mode] + rate * dt
             else:

@@ -68,11 +68,10 @@ def clear_contacts(state, law, first, last):
 
 
 @jit
-def difference(state, box, i, j, image):
-    """X_i - X_j [m] with the image added, and its length: (x, y, z, distance)."""
+def difference(state, edges, i, j, image):
+    """X_i - X_j [m] with the image in a box of these edges added, and its length: (x, y, z, distance)."""
     ri = np.uint64(i) * _ROW
     rj = np.uint64(j) * _ROW
-    edges = box.edges(state.scalar)
     dx = state.monomer[ri + X] - state.monomer[rj + X] + image[0] * edges[0]
     dy = state.monomer[ri + Y] - state.monomer[rj + Y] + image[1] * edges[1]
     dz = state.monomer[ri + Z] - state.monomer[rj + Z] + image[2] * edges[2]
@@ -80,9 +79,9 @@ def difference(state, box, i, j, image):
 
 
 @jit
-def gap(state, box, i, j, image):
+def gap(state, edges, i, j, image):
     """Distance between two surfaces [m], negative when they overlap."""
-    distance = difference(state, box, i, j, image)[3]
+    distance = difference(state, edges, i, j, image)[3]
     return distance - state.monomer[np.uint64(i) * _ROW + RADIUS] - state.monomer[np.uint64(j) * _ROW + RADIUS]
 
 
@@ -111,7 +110,7 @@ def append_contact(state, law, box, i, j, image, back, at_rest):
     ri = np.uint64(i) * _ROW
     rj = np.uint64(j) * _ROW
     at = contact_start(law, k)
-    dx, dy, dz, distance = difference(state, box, i, j, image)
+    dx, dy, dz, distance = difference(state, box.edges(state.scalar), i, j, image)
     normal = (dx / distance, dy / distance, dz / distance)
     for field in range(law.n_fields()):
         contact[at + np.uint64(field * LANES)] = 0.0

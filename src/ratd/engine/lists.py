@@ -100,6 +100,7 @@ def reach_left(reach, scale, greatest):
 @jit
 def near_pairs(state, box, far, reach):
     """Pairs of the far list that are not in contact and closer than `reach`: the list, with room, and their number."""
+    edges = box.edges(state.scalar)
     n = state.counter[MONOMERS]
     n_contacts = state.counter[CONTACTS]
     begin = np.zeros(n + 2, dtype=np.int64)
@@ -118,7 +119,7 @@ def near_pairs(state, box, far, reach):
         i = far[p, 0]
         j = far[p, 1]
         image = (far[p, 2], far[p, 3], far[p, 4])
-        if gap(state, box, i, j, image) > reach:
+        if gap(state, edges, i, j, image) > reach:
             continue
         touching = False
         for q in range(begin[i], begin[i + 1]):
@@ -148,22 +149,27 @@ def with_pair(near, count, i, j, image):
 
 
 @jit
-def take_touching(state, box, near, count):
-    """Take the pairs that touch out of the near list: these, sorted, and the number of those left.
+def count_touching(state, box, near, count):
+    """How many of the pairs of the near list touch."""
+    edges = box.edges(state.scalar)
+    found = 0
+    for p in range(count):
+        found += gap(state, edges, near[p, 0], near[p, 1], (near[p, 2], near[p, 3], near[p, 4])) <= 0.0
+    return found
+
+
+@jit
+def take_touching(state, box, near, count, found):
+    """Take the pairs that touch, so many, out of the near list: these, sorted, and the number of those left.
 
     Sorted, so that the order in which contacts form, and with it every sum, does not depend on that of the list.
     """
-    found = 0
-    for p in range(count):
-        if gap(state, box, near[p, 0], near[p, 1], (near[p, 2], near[p, 3], near[p, 4])) <= 0.0:
-            found += 1
+    edges = box.edges(state.scalar)
     touching = np.empty((found, 5), dtype=np.int64)
-    if found == 0:
-        return touching, count
     found = 0
     kept = 0
     for p in range(count):
-        if gap(state, box, near[p, 0], near[p, 1], (near[p, 2], near[p, 3], near[p, 4])) <= 0.0:
+        if gap(state, edges, near[p, 0], near[p, 1], (near[p, 2], near[p, 3], near[p, 4])) <= 0.0:
             q = found
             while q > 0 and _before(near, p, touching, q - 1):
                 touching[q] = touching[q - 1]

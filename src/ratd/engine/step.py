@@ -13,6 +13,7 @@ from ratd.engine.layout import (
 from ratd.engine.lists import (
     FAR,
     NEAR,
+    count_touching,
     farthest_move,
     growth,
     mean_radius,
@@ -116,10 +117,12 @@ def advance(state, law, drive, box, integrator, until):
                     near, n_near = with_pair(near, n_near, i, j, get_image(state, k))
                     remove_contact(state, law, k)
             changed = True
-        touching, n_near = take_touching(state, box, near, n_near)
-        for p in range(touching.shape[0]):
-            image = (touching[p, 2], touching[p, 3], touching[p, 4])
-            append_contact(state, law, box, touching[p, 0], touching[p, 1], image, dt, False)
+        found = count_touching(state, box, near, n_near)
+        if found > 0:
+            touching, n_near = take_touching(state, box, near, n_near, found)
+            for p in range(found):
+                image = (touching[p, 2], touching[p, 3], touching[p, 4])
+                append_contact(state, law, box, touching[p, 0], touching[p, 1], image, dt, False)
             changed = True
         if changed:
             update_contact_rates(state, law, integrator)

@@ -15,22 +15,7 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.geometry.neighbours import close_images, close_pairs
 from ratd.laws.contact_fields import (
-    DVX,
-    DVY,
-    DVZ,
-    DX,
-    DY,
-    DZ,
-    FX,
-    FY,
-    FZ,
-    LANES,
-    VXX,
-    VXY,
-    VXZ,
-    VYY,
-    VYZ,
-    VZZ,
+    DVX, DVY, DVZ, DX, DY, DZ, FX, FY, FZ, LANES, VXX, VXY, VXZ, VYY, VYZ, VZZ,
 )  # fmt: skip
 
 __all__ = ["SCHEMES", "Open", "Periodic", "open_space", "periodic", "touching_pairs"]

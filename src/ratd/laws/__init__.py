@@ -31,7 +31,8 @@ compiled. `tests/laws/test_own_law.py` adds a law in one file. A contact begins 
 jkr_with_springs         the law of Johnson, Kendall & Roberts with springs of limited displacement: `jkr`
 dmt_with_friction        the law of Derjaguin, Muller & Toporov with friction of limited force: `dmt`
 johnson_kendall_roberts  formulae of the normal contact of the first
-tangential               formulae of its sliding, rolling and twisting
+derjaguin_muller_toporov formulae of the normal contact of the second
+tangential               formulae of sliding, rolling and twisting of the first
 material_pair            the constants of a contact between two materials
 contact_constants        constants of an adhesive contact at rest
 contact_fields           where each number of a contact stands

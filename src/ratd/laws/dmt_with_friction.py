@@ -16,42 +16,10 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.laws.contact_constants import reduced_radius
 from ratd.laws.contact_fields import (
-    A_I,
-    A_J,
-    COMMON,
-    DAMPING_RATE,
-    DVX,
-    DVY,
-    DVZ,
-    DX,
-    DY,
-    DZ,
-    E_DAMP,
-    E_ROLL,
-    E_SLIDE,
-    E_TWIST,
-    FX,
-    FY,
-    FZ,
-    NCX,
-    NCY,
-    NCZ,
-    NORMAL,
-    STEP,
-    TIX,
-    TIY,
-    TIZ,
-    TJX,
-    TJY,
-    TJZ,
-    WIX,
-    WIY,
-    WIZ,
-    WJX,
-    WJY,
-    WJZ,
-    law_fields,
+    A_I, A_J, COMMON, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FX, FY, FZ, NCX,
+    NCY, NCZ, NORMAL, STEP, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
 )  # fmt: skip
+from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overlap, hertz_stiffness, vibration_period
 
 FRICTIONS = ("none", "velocity", "spring")
 NO_FRICTION, VELOCITY, SPRING = range(len(FRICTIONS))
@@ -69,36 +37,6 @@ N_OWN = 17
     SLIDE_STIFFNESS, ROLL_STIFFNESS,  # of springs, or force over rate
     ROLL_LIMIT,
 ) = law_fields(N_OWN)  # fmt: skip
-
-
-@jit
-def adhesion_force(reduced_radius, surface_energy):
-    """Adhesion 4 pi gamma R [N], the same at any overlap (Umstaetter & Urbassek 2020, Sect. 2.1)."""
-    return 4.0 * math.pi * surface_energy * reduced_radius
-
-
-@jit
-def hertz_stiffness(reduced_radius, reduced_modulus):
-    """K [N m^-3/2] of the force K delta^(3/2): 4/3 E* sqrt(R), which is 2/3 Y/(1 - nu^2) sqrt(R) of equal spheres."""
-    return 4.0 / 3.0 * reduced_modulus * math.sqrt(reduced_radius)
-
-
-@jit
-def equilibrium_overlap(hertz_stiffness, adhesion_force):
-    """delta_eq [m] = (4 pi gamma R/K)^(2/3), Eq. 1."""
-    return (adhesion_force / hertz_stiffness) ** (2.0 / 3.0)
-
-
-@jit
-def breaking_energy(adhesion_force, equilibrium_overlap):
-    """Energy [J] that parts two spheres at rest, E_break = 3/5 4 pi gamma R delta_eq, Eq. 2 (its last line)."""
-    return 0.6 * adhesion_force * equilibrium_overlap
-
-
-@jit
-def vibration_period(reduced_mass, hertz_stiffness, equilibrium_overlap):
-    """Period [s] of small undamped vibrations about delta_eq: 2 pi sqrt(m_red/(3/2 K sqrt(delta_eq)))."""
-    return 2.0 * math.pi * math.sqrt(reduced_mass / (1.5 * hertz_stiffness * math.sqrt(equilibrium_overlap)))
 
 
 @jit(forceinline=True)

@@ -21,44 +21,8 @@ from ratd.laws.contact_constants import (
     reduced_radius,
 )
 from ratd.laws.contact_fields import (
-    A_I,
-    A_J,
-    COMMON,
-    DAMPING_RATE,
-    DVX,
-    DVY,
-    DVZ,
-    DX,
-    DY,
-    DZ,
-    E_DAMP,
-    E_ROLL,
-    E_SLIDE,
-    E_TWIST,
-    FX,
-    FY,
-    FZ,
-    NCX,
-    NCY,
-    NCZ,
-    NORMAL,
-    STEP,
-    SX,
-    SY,
-    SZ,
-    TIX,
-    TIY,
-    TIZ,
-    TJX,
-    TJY,
-    TJZ,
-    WIX,
-    WIY,
-    WIZ,
-    WJX,
-    WJY,
-    WJZ,
-    law_fields,
+    A_I, A_J, COMMON, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FX, FY, FZ, NCX,
+    NCY, NCZ, NORMAL, STEP, SX, SY, SZ, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
 )  # fmt: skip
 from ratd.laws.johnson_kendall_roberts import (
     COMPRESSION_END,
@@ -135,9 +99,7 @@ def _direct_and_twist(contact, scratch, start, count, dt_drift):
             + (scratch[WIY + q] - scratch[WJY + q]) * my
             + (scratch[WIZ + q] - scratch[WJZ + q]) * mz
         )
-        kept = min(max(phi, -TWISTING_LIMIT), TWISTING_LIMIT)
-        contact[E_TWIST + k] += contact[K_TWIST + k] * kept * (phi - kept)
-        contact[PHI + k] = kept
+        contact[PHI + k] = phi
 
         compression = (contact[A_I + k] + contact[A_J + k] - square * inv) * contact[INV_DELTA0 + k]
         contact[COMPRESSION + k] = compression
@@ -194,7 +156,7 @@ def _turn(contact, scratch, start, count, dt_drift):
 def _displace(contact, scratch, start, count):
     """Sliding displacements: k_s zeta, left in `scratch` at SX, SY, SZ, and (w.n_c)/|X_i - X_j| at FY.
 
-    Returns the number of limits of sliding and rolling that are exceeded.
+    Returns the number of limits of sliding, rolling and twisting that are exceeded.
     """
     exceeded = 0
     for lane in range(count):
@@ -210,6 +172,7 @@ def _displace(contact, scratch, start, count):
             contact[A_I + k], nix, niy, niz, contact[A_J + k], njx, njy, njz,
             contact[NCX + k], contact[NCY + k], contact[NCZ + k],
         )  # fmt: skip
+        exceeded += abs(contact[PHI + k]) > TWISTING_LIMIT
         exceeded += (zx * zx + zy * zy + zz * zz) * contact[INV_ZETA2 + k] > 1.0
         exceeded += ((nix + njx) ** 2 + (niy + njy) ** 2 + (niz + njz) ** 2) * contact[INV_XI2 + k] > 1.0
         k_s = contact[K_SLIDE + k]
@@ -222,7 +185,7 @@ def _displace(contact, scratch, start, count):
 
 @jit(forceinline=True)
 def _slip(contact, scratch, start, count):
-    """Pointers cut back to the limits of sliding and rolling, and made unit vectors again.
+    """Pointers and angles cut back to their limits, and the pointers made unit vectors again.
 
     Sliding shortens zeta by what has slipped, and changes neither w.n_c nor n_i + n_j; rolling does not change w.
     """
@@ -246,6 +209,10 @@ def _slip(contact, scratch, start, count):
         slipped = excess_fraction(zeta2 * contact[INV_ZETA2 + k])
         rolled = excess_fraction(xi2 * contact[INV_XI2 + k])
         # limit times excess
+        phi = contact[PHI + k]
+        kept_phi = min(max(phi, -TWISTING_LIMIT), TWISTING_LIMIT)
+        contact[E_TWIST + k] += contact[K_TWIST + k] * kept_phi * (phi - kept_phi)
+        contact[PHI + k] = kept_phi
         contact[E_SLIDE + k] += contact[K_SLIDE + k] * zeta2 * slipped * (1.0 - slipped)
         contact[E_ROLL + k] += contact[K_ROLL + k] * xi2 * rolled * (1.0 - rolled)
         nix, niy, niz, njx, njy, njz = slide_back(slipped, inv_sum, nix, niy, niz, njx, njy, njz, zx, zy, zz)

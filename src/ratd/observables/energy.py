@@ -6,31 +6,8 @@ from ratd.base.jit import jit
 from ratd.engine.contacts import contact_start
 from ratd.engine.forces import contact_forces
 from ratd.engine.layout import (
-    CONTACTS,
-    DT_DRIFT,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    INERTIA,
-    INV_INERTIA,
-    INV_MASS,
-    LOST_DAMP,
-    MASS,
-    MONOMERS,
-    ROW,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
-    VX,
-    VY,
-    VZ,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
+    CONTACTS, DT_DRIFT, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, INERTIA, INV_INERTIA, INV_MASS, LOST_DAMP, MASS,
+    MONOMERS, ROW, TORQUE_X, TORQUE_Y, TORQUE_Z, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.engine.state import copied
 from ratd.laws.contact_fields import E_DAMP, E_ROLL, E_SLIDE, E_TWIST, SCRATCH_SIZE

@@ -7,17 +7,7 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.engine.contacts import contact_start
 from ratd.engine.layout import (
-    CONTACTS,
-    FORCE_ROW,
-    FORCE_X,
-    FORCE_Y,
-    FORCE_Z,
-    MONOMERS,
-    RADIUS,
-    ROW,
-    TORQUE_X,
-    TORQUE_Y,
-    TORQUE_Z,
+    CONTACTS, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, MONOMERS, RADIUS, ROW, TORQUE_X, TORQUE_Y, TORQUE_Z,
 )  # fmt: skip
 from ratd.laws.contact_fields import NORMAL
 

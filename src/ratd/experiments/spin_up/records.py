@@ -8,15 +8,7 @@ import xarray as xr
 from ratd.drives.rotating import OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK
 from ratd.engine.fragments import note_lost
 from ratd.engine.layout import (
-    DT,
-    FRAGMENTS_LOST,
-    LARGEST_CONTACTS,
-    LARGEST_MONOMERS,
-    MASS,
-    MONOMERS,
-    STEPS,
-    TIME,
-    X,
+    DT, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, STEPS, TIME, X,
 )  # fmt: skip
 from ratd.engine.state import monomer_rows
 from ratd.observables.energy import dissipated, kinetic, stored
