@@ -5,7 +5,7 @@ import pytest
 from numba.core.errors import TypingError
 
 from ratd.base.jit import jit
-from ratd.base.rows import EIGHT, add_columns, gather_differences, gather_sides
+from ratd.base.rows import EIGHT, add_forces, gather_differences, gather_sides
 
 STRIDE = 11
 NUMBERS = [0, 1, 2, 4, 5, 6]
@@ -18,8 +18,8 @@ def gathered(rows, first, second, begin, columns, at, stride):
 
 
 @jit
-def added(rows, index, begin, columns, at, at_last, stride, sign):
-    add_columns(rows, index, begin, columns, at, at_last, stride, sign)
+def added(rows, first, second, begin, columns, at, stride):
+    add_forces(rows, first, second, begin, columns, at, stride)
 
 
 def test_rows_are_gathered_as_columns():
@@ -35,27 +35,28 @@ def test_rows_are_gathered_as_columns():
     assert np.isnan(table[:, EIGHT:]).all()
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_columns_are_added_to_rows_in_their_order_also_twice(sign):
+def test_forces_are_added_to_rows_in_their_order_also_twice():
     rng = np.random.default_rng(1)
     rows = rng.normal(size=(9, 8))
-    index = np.array([4, 4, 0, 7, 4, 2, 2, 8, 1, 1], dtype=np.uint64)
-    columns = rng.normal(size=8 * STRIDE)
-    table = columns.reshape(8, STRIDE)
+    first = np.array([4, 4, 0, 7, 4, 2, 2, 8, 1, 1], dtype=np.uint64)
+    second = np.array([0, 5, 4, 4, 3, 2, 6, 6, 0, 8], dtype=np.uint64)
+    columns = rng.normal(size=10 * STRIDE)
+    table = columns.reshape(10, STRIDE)[1:]
     wanted = rows.copy()
     for lane in range(EIGHT):
-        wanted[index[1 + lane], :3] += sign * table[1:4, lane]
-        wanted[index[1 + lane], 4:7] += table[5:8, lane]
+        force, torque_i, torque_j = (table[k : k + 3, lane] for k in (0, 3, 6))
+        wanted[first[1 + lane], :3] += force
+        wanted[first[1 + lane], 4:7] += torque_i
+        wanted[second[1 + lane], :3] -= force
+        wanted[second[1 + lane], 4:7] += torque_j
     flat = rows.ravel().copy()
-    added(
-        flat, index, np.uint64(1), columns, np.uint64(STRIDE), np.uint64(5 * STRIDE), np.uint64(STRIDE), sign
-    )  # fmt: skip
+    added(flat, first, second, np.uint64(1), columns, np.uint64(STRIDE), np.uint64(STRIDE))
     np.testing.assert_array_equal(flat.reshape(9, 8), wanted)
 
 
 def test_what_is_not_flat_is_refused():
     with pytest.raises(TypingError, match="flat contiguous arrays"):
         added(
-            np.zeros((2, 8)), np.zeros(8, dtype=np.uint64), np.uint64(0), np.zeros(48), np.uint64(0), np.uint64(24),
-            np.uint64(8), 1.0,
+            np.zeros((2, 8)), np.zeros(8, dtype=np.uint64), np.zeros(8, dtype=np.uint64), np.uint64(0), np.zeros(80),
+            np.uint64(0), np.uint64(8),
         )  # fmt: skip

@@ -201,7 +201,7 @@ def _slip(contact, scratch, start, count):
         a_i = contact[A_I + k]
         a_j = contact[A_J + k]
         inv_sum = contact[INV_SUM + k]
-        _, zx, zy, zz = sliding_displacement(
+        wn, zx, zy, zz = sliding_displacement(
             a_i, nix, niy, niz, a_j, njx, njy, njz, contact[NCX + k], contact[NCY + k], contact[NCZ + k]
         )
         zeta2 = zx * zx + zy * zy + zz * zz
@@ -225,10 +225,15 @@ def _slip(contact, scratch, start, count):
         contact[NJX + k] = njx
         contact[NJY + k] = njy
         contact[NJZ + k] = njz
-        kept = 1.0 - slipped
-        scratch[SX + q] *= kept
-        scratch[SY + q] *= kept
-        scratch[SZ + q] *= kept
+        # Anew from the pointers as they are now: else the torques would not match the force.
+        unit_wn, zx, zy, zz = sliding_displacement(
+            a_i, nix, niy, niz, a_j, njx, njy, njz, contact[NCX + k], contact[NCY + k], contact[NCZ + k]
+        )
+        k_s = contact[K_SLIDE + k]
+        scratch[SX + q] = k_s * zx
+        scratch[SY + q] = k_s * zy
+        scratch[SZ + q] = k_s * zz
+        scratch[FY + q] *= unit_wn / wn
 
 
 @jit(forceinline=True)
