@@ -10,11 +10,16 @@ import ratd
 README = Path(__file__).parents[1] / "README.md"
 
 
-def test_one_grain():
-    """With a grain that takes a second, and without the last line, whose spin-up may take long."""
-    text = README.read_text(encoding="utf-8").split("\n## One grain\n")[1].split("The same of the pipeline")[0]
-    lines = [line[4:] for line in text.splitlines() if line.startswith("    ")]
-    assert "ratd.spin_up(own" in lines[-1] and "200e-9" in text
+def code(section, start, end):
+    """Lines of code of a section of the README between two texts."""
+    text = README.read_text(encoding="utf-8").split(f"\n## {section}\n")[1].split(start)[1].split(end)[0]
+    return [line[4:] for line in text.splitlines() if line.startswith("    ")]
+
+
+def test_one_grain_and_two_that_meet():
+    """With a grain that takes a second, and without the last line of the first, whose spin-up may take long."""
+    lines = code("From Python", "one grain:", "Any spheres")
+    assert "ratd.spin_up(own" in lines[-1] and "200e-9" in "".join(lines)
     own = ratd.grow("BA", 60e-9, "q-S", 0)
     names = {"position": own.position, "radius": own.radius}
     exec("\n".join(lines[:-1]).replace("200e-9", "60e-9"), names)
@@ -23,3 +28,8 @@ def test_one_grain():
     assert line.get_ydata() == pytest.approx(names["run"]["mass"].values)
     assert line.get_xdata() == pytest.approx(names["run"]["omega"].values)
     assert names["own"].n_contacts == own.n_contacts
+
+    exec("\n".join(code("From Python", "at 10 m/s:", "| to add")), names)
+    meeting = names["run"]
+    assert meeting["n_pieces"][0] == 2
+    assert abs(meeting["residual"][-1]) < 0.03 * meeting["kinetic_translation"][0]

@@ -10,10 +10,9 @@ from ratd.drives.squeezing import squeezing
 from ratd.engine.checkpoint import load, save
 from ratd.engine.layout import CONTACTS, FRAGMENTS_LOST, SEARCHES, STEPS
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.lists import far_pairs
 from ratd.engine.state import copied, new_state
 from ratd.engine.step import run, until
-from ratd.geometry.box import open_space, periodic
+from ratd.geometry.box import open_space, periodic, touching_pairs
 from ratd.laws import dmt, jkr
 from systems import tree, used
 
@@ -37,9 +36,7 @@ def start(law, box, speed):
     materials = [MATERIALS["q-S"], MATERIALS["a-C"]]
     motion = rng.normal(size=(2, N, 3)) * np.array([speed, 2.5e7 * speed])[:, None, None]
     parts = law, box, INTEGRATOR
-    nothing = np.zeros((0, 2), dtype=np.int64)
-    empty = new_state(position, radius, materials, nothing, *parts)
-    contacts = far_pairs(empty, box, position, radius, 0.0)
+    contacts = touching_pairs(position, radius, box)
     return new_state(
         position, radius, materials, contacts, *parts, velocity=motion[0], spin=motion[1], kind=rng.integers(0, 2, N)
     )  # fmt: skip
