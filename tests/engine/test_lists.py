@@ -12,7 +12,7 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import copied, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, periodic
-from ratd.laws import jkr
+from ratd.laws import dmt, jkr
 from systems import tree
 
 LAW, INTEGRATOR = jkr(damping="none", friction="none"), leapfrog()
@@ -97,3 +97,35 @@ def test_no_contact_is_missed_and_few_searches_are_made(name):
     assert changes > 30
     # measured 14 to 18 of 60 changes in the clusters, 200 of 3000 to 4000 in the boxes
     assert 0 < state.counter[SEARCHES] < (0.1 if len(radius) > 100 else 0.5) * changes
+
+
+def test_spheres_at_rest_in_a_shrinking_box_meet():
+    """Lists wear by the shrinking alone: nothing moves against the box."""
+    a, length = 30e-9, 1e-6
+    box, rest = periodic(length, -1e7), np.zeros((2, 3))
+    position = np.array([[0.0, 0, 0], [80e-9, 0, 0]])
+    state = new_state(position, np.full(2, a), MATERIALS["q-S"], NOTHING, LAW, box, INTEGRATOR, velocity=rest)
+    touch = np.log(60 / 80) / -1e7
+    state, _ = run(state, LAW, squeezing(), box, INTEGRATOR, until(time=0.999 * touch))
+    assert state.counter[CONTACTS] == 0
+    # from the start once more, in one call
+    state = new_state(position, np.full(2, a), MATERIALS["q-S"], NOTHING, LAW, box, INTEGRATOR, velocity=rest)
+    state, _ = run(state, LAW, squeezing(), box, INTEGRATOR, until(time=1.001 * touch))
+    assert state.counter[CONTACTS] == 1
+
+
+def test_a_contact_that_has_broken_can_form_again_at_once():
+    """A small sphere bounces between two heavy ones, a thousandth of its radius apart: no list is worn meanwhile."""
+    a, law = 30e-9, dmt(viscous_time=0.0, friction="none")
+    radius = np.array([10 * a, a, 10 * a])
+    position = np.zeros((3, 3))
+    position[1, 0], position[2, 0] = 11 * a + 5e-4 * a, 22 * a + 1e-3 * a
+    velocity = np.array([[0.0, 0, 0], [3.0, 0, 0], [0, 0, 0]])
+    state = new_state(position, radius, MATERIALS["q-S"], NOTHING, law, open_space(), INTEGRATOR, velocity=velocity)
+    fresh, seen = copied(state), []
+    for goal in range(1, 301):
+        fresh, _ = run(fresh, law, free(), open_space(), INTEGRATOR, until(steps=goal))
+        seen.append(fresh.counter[CONTACTS])
+    state, _ = run(state, law, free(), open_space(), INTEGRATOR, until(steps=300))
+    assert (np.diff(seen) == 1).sum() > 2
+    assert fresh.monomer.tobytes() == state.monomer.tobytes()
