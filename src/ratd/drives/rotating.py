@@ -22,10 +22,11 @@ from ratd.observables.stress import total_stress
 
 OMEGA = CLOCK
 """Of `state.drive`: angular velocity of the frame [rad/s]."""
-ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS, INERTIA_Z = range(1, 9)
+ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS, OWN_INERTIA = range(1, 9)
 """... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last
 step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments;
-moment of inertia of the largest about z, as it was at the last sample [kg m2]."""
+moments of inertia of its
+monomers about their own centres, added up [kg m2]."""
 
 CENTRE_EVERY = 4096
 """Steps after which the origin is put back to the centre of mass.
@@ -86,6 +87,7 @@ class Rotating(NamedTuple):
     def follow(self, state, changed):
         fragments = label_fragments(state)
         state.drive[FRAGMENTS] = fragments
+        state.drive[OWN_INERTIA] = own_inertia(state)
         omega, acceleration = angular_velocity(self, state.scalar[TIME])
         state.drive[OMEGA] = omega
         state.drive[ACCELERATION] = acceleration
@@ -94,7 +96,6 @@ class Rotating(NamedTuple):
             state.drive[UNWIND] = 0.0
             state.drive[EXCESS] = math.nan
             centre(state)
-            state.drive[INERTIA_Z] = inertia_z(state)
 
     def leave(self, state, law):
         if state.drive[FRAGMENTS] < 2.0:
@@ -104,17 +105,16 @@ class Rotating(NamedTuple):
     def sample(self, state, law):
         state.drive[STRESS_SUM] += total_stress(state, law)
         state.drive[STRESS_SAMPLES] += 1.0
-        state.drive[INERTIA_Z] = inertia_z(state)
         if state.counter[STEPS] % CENTRE_EVERY == 0:
             centre(state)
 
     def move(self, state, box, kick, dt):
         drive, scalar = state.drive, state.scalar
         omega, domega, unwind = drive[OMEGA], drive[ACCELERATION], drive[UNWIND]
-        inertia = drive[INERTIA_Z]
-        momentum, fastest = kick_and_drift(
+        momentum, inertia, fastest = kick_and_drift(
             state.monomer, state.force, state.counter[MONOMERS], kick, dt, omega, domega, unwind, self
         )
+        inertia += drive[OWN_INERTIA]
         if self.torque:
             # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
             drive[TORQUE_WORK] += (domega * kick + unwind) * (inertia * omega + momentum)
@@ -235,6 +235,8 @@ def kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, drive):
     -------
     angular_momentum : float
         Of the largest fragment about z, in the frame, after the kick [kg m2 s-1].
+    inertia : float
+        Moment of inertia of its centres about z [kg m2].
     fastest : float
         Greatest speed of any monomer in the frame [m/s].
 
@@ -270,7 +272,7 @@ def kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, drive):
     spin_driving = vector4(0.0, 0.0, alpha * kick, 0.0)
     spin_lag = vector4(0.0, 0.0, spin_euler, 0.0)
     nothing = vector4(0.0, 0.0, 0.0, 0.0)
-    orbital, spinning = nothing, nothing
+    orbital, spinning, spread = nothing, nothing, nothing
     fastest = 0.0
     for k in range(n):
         r = np.uint64(k) * _ROW
@@ -297,11 +299,14 @@ def kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, drive):
         store4(monomer, r + WX, w)
         store4(force, q + FORCE_X, nothing)
         store4(force, q + TORQUE_X, nothing)
-        orbital = add4(orbital, multiply4(scale4(driven * monomer[r + MASS], v), across))
+        weighed = scale4(driven * monomer[r + MASS], across)
+        orbital = add4(orbital, multiply4(weighed, v))
+        spread = add4(spread, multiply4(weighed, across))
         spinning = add4(spinning, scale4(driven * monomer[r + INERTIA], w))
         fastest = max(fastest, square4(v))
     backward, forward, _, _ = numbers4(orbital)
-    return forward - backward + numbers4(spinning)[2], math.sqrt(fastest)
+    across_x, across_y, _, _ = numbers4(spread)
+    return forward - backward + numbers4(spinning)[2], across_x + across_y, math.sqrt(fastest)
 
 
 @jit
@@ -328,14 +333,12 @@ def turn_to_take_out(excess, last_excess, last_unwind):
 
 
 @jit
-def inertia_z(state):
-    """Moment of inertia of the largest fragment about z [kg m2]."""
+def own_inertia(state):
+    """Sum of the moments of inertia of the largest fragment's monomers about their own centres [kg m2]."""
     inertia = 0.0
     for k in range(state.counter[MONOMERS]):
         if state.fragment[k] == 0:
-            r = np.uint64(k) * _ROW
-            square = state.monomer[r + X] ** 2 + state.monomer[r + Y] ** 2
-            inertia += state.monomer[r + MASS] * square + state.monomer[r + INERTIA]
+            inertia += state.monomer[np.uint64(k) * _ROW + INERTIA]
     return inertia
 
 
