@@ -23,6 +23,30 @@ def contact_pairs(state):
 
 
 @jit
+def pieces(state):
+    """Masses [kg] and numbers of monomers of all pieces, and the piece of each monomer.
+
+    Returns
+    -------
+    mass : (f,) float64 array
+    members : (f,) int64 array
+    label : (n,) int64 array
+        0, 1, ... in the order of the first monomer of each piece.
+    """
+    n = state.counter[MONOMERS]
+    label = connected_components(n, contact_pairs(state))
+    number = 0
+    for k in range(n):
+        number = max(number, label[k] + 1)
+    mass = np.zeros(number)
+    members = np.zeros(number, dtype=np.int64)
+    for k in range(n):
+        mass[label[k]] += state.monomer[np.uint64(k) * _ROW + MASS]
+        members[label[k]] += 1
+    return mass, members, label
+
+
+@jit
 def label_fragments(state):
     """Label the fragments in `state.fragment`: 0 is the largest by mass, the others follow in the order of their first
     monomers. Of two of the same mass the one with the first monomer counts as the larger.
@@ -32,33 +56,23 @@ def label_fragments(state):
     int
         Number of fragments.
     """
-    n = state.counter[MONOMERS]
-    pairs = contact_pairs(state)
-    label = connected_components(n, pairs)
-    fragments = 0
-    for k in range(n):
-        fragments = max(fragments, label[k] + 1)
-    mass = np.zeros(fragments)
-    for k in range(n):
-        mass[label[k]] += state.monomer[np.uint64(k) * _ROW + MASS]
+    mass, members, label = pieces(state)
     largest = 0
-    for f in range(fragments):
+    for f in range(mass.shape[0]):
         if mass[f] > mass[largest] * (1.0 + 1e-12):
             largest = f
-    members = 0
-    for k in range(n):
+    for k in range(label.shape[0]):
         # The largest gets label 0, the ones before it move up by one.
         if label[k] == largest:
             state.fragment[k] = 0
-            members += 1
         else:
             state.fragment[k] = label[k] + 1 if label[k] < largest else label[k]
     inside = 0
-    for k in range(pairs.shape[0]):
-        inside += state.fragment[pairs[k, 0]] == 0
-    state.counter[LARGEST_MONOMERS] = members
+    for k in range(state.counter[CONTACTS]):
+        inside += state.fragment[state.pair_i[k]] == 0
+    state.counter[LARGEST_MONOMERS] = members[largest]
     state.counter[LARGEST_CONTACTS] = inside
-    return fragments
+    return mass.shape[0]
 
 
 @jit

@@ -111,6 +111,62 @@ def kept_fraction(square, limit):
 
 
 @jit(forceinline=True)
+def _rates(contact, scratch, k, q):
+    """Levers of i and j, the velocity of sliding, the spin of rolling, and the rate of twisting of one contact.
+
+    Returns
+    -------
+    l_i, l_j : float
+        Parts of the distance that belong to i and j [m].
+    tx, ty, tz : float
+        Velocity of the contact points against each other, normal to the direction [m/s].
+    wx, wy, wz : float
+        Spin of i against j, normal to the direction [rad/s].
+    twist : float
+        ... along it.
+    """
+    mx = scratch[TIX + q]
+    my = scratch[TIY + q]
+    mz = scratch[TIZ + q]
+    receding = scratch[TJY + q]
+    inv_sum = scratch[TJX + q] / (contact[A_I + k] + contact[A_J + k])
+    l_i = contact[A_I + k] * inv_sum
+    l_j = contact[A_J + k] * inv_sum
+    ux = l_i * scratch[WIX + q] + l_j * scratch[WJX + q]
+    uy = l_i * scratch[WIY + q] + l_j * scratch[WJY + q]
+    uz = l_i * scratch[WIZ + q] + l_j * scratch[WJZ + q]
+    tx = scratch[DVX + q] - receding * mx - (uy * mz - uz * my)
+    ty = scratch[DVY + q] - receding * my - (uz * mx - ux * mz)
+    tz = scratch[DVZ + q] - receding * mz - (ux * my - uy * mx)
+    wx = scratch[WIX + q] - scratch[WJX + q]
+    wy = scratch[WIY + q] - scratch[WJY + q]
+    wz = scratch[WIZ + q] - scratch[WJZ + q]
+    twist = wx * mx + wy * my + wz * mz
+    return l_i, l_j, tx, ty, tz, wx - twist * mx, wy - twist * my, wz - twist * mz, twist
+
+
+@jit(forceinline=True)
+def _give(contact, scratch, k, q, l_i, l_j, sx, sy, sz, px, py, pz):
+    """Leave the force on i and the torques of one contact, from the friction s on i and the torque p on i."""
+    ncx = contact[NCX + k]
+    ncy = contact[NCY + k]
+    ncz = contact[NCZ + k]
+    normal = scratch[FX + q]
+    scratch[FX + q] = normal * ncx + sx
+    scratch[FY + q] = normal * ncy + sy
+    scratch[FZ + q] = normal * ncz + sz
+    bx = ncy * sz - ncz * sy
+    by = ncz * sx - ncx * sz
+    bz = ncx * sy - ncy * sx
+    scratch[TIX + q] = px - l_i * bx
+    scratch[TIY + q] = py - l_i * by
+    scratch[TIZ + q] = pz - l_i * bz
+    scratch[TJX + q] = -px - l_j * bx
+    scratch[TJY + q] = -py - l_j * by
+    scratch[TJZ + q] = -pz - l_j * bz
+
+
+@jit(forceinline=True)
 def _drag(contact, scratch, start, count, dt, limits):
     """Friction that grows with the rate up to its limit: forces and torques from what `_normal` has left."""
     slide_scale, roll_scale, twist_scale = limits
@@ -123,26 +179,9 @@ def _drag(contact, scratch, start, count, dt, limits):
         mx = scratch[TIX + q]
         my = scratch[TIY + q]
         mz = scratch[TIZ + q]
-        distance = scratch[TJX + q]
-        receding = scratch[TJY + q]
         root = scratch[TJZ + q]
         delta = root * root
-        inv_sum = distance / (contact[A_I + k] + contact[A_J + k])
-        l_i = contact[A_I + k] * inv_sum
-        l_j = contact[A_J + k] * inv_sum
-        ux = l_i * scratch[WIX + q] + l_j * scratch[WJX + q]
-        uy = l_i * scratch[WIY + q] + l_j * scratch[WJY + q]
-        uz = l_i * scratch[WIZ + q] + l_j * scratch[WJZ + q]
-        tx = scratch[DVX + q] - receding * mx - (uy * mz - uz * my)
-        ty = scratch[DVY + q] - receding * my - (uz * mx - ux * mz)
-        tz = scratch[DVZ + q] - receding * mz - (ux * my - uy * mx)
-        wx = scratch[WIX + q] - scratch[WJX + q]
-        wy = scratch[WIY + q] - scratch[WJY + q]
-        wz = scratch[WIZ + q] - scratch[WJZ + q]
-        twist = wx * mx + wy * my + wz * mz
-        wx = wx - twist * mx
-        wy = wy - twist * my
-        wz = wz - twist * mz
+        l_i, l_j, tx, ty, tz, wx, wy, wz, twist = _rates(contact, scratch, k, q)
 
         touching = 1.0 if contact[OVERLAP + k] >= 0.0 else 0.0
         area = delta * contact[REDUCED + k]
@@ -161,7 +200,6 @@ def _drag(contact, scratch, start, count, dt, limits):
         contact[E_ROLL + k] += dt * h * roll2
         contact[E_TWIST + k] += dt * e * twist * twist
 
-        normal = scratch[FX + q]
         sx = -g * tx
         sy = -g * ty
         sz = -g * tz
@@ -170,21 +208,10 @@ def _drag(contact, scratch, start, count, dt, limits):
         sx -= along * ncx
         sy -= along * ncy
         sz -= along * ncz
-        scratch[FX + q] = normal * ncx + sx
-        scratch[FY + q] = normal * ncy + sy
-        scratch[FZ + q] = normal * ncz + sz
-        bx = ncy * sz - ncz * sy
-        by = ncz * sx - ncx * sz
-        bz = ncx * sy - ncy * sx
         px = -h * wx - e * twist * mx
         py = -h * wy - e * twist * my
         pz = -h * wz - e * twist * mz
-        scratch[TIX + q] = px - l_i * bx
-        scratch[TIY + q] = py - l_i * by
-        scratch[TIZ + q] = pz - l_i * bz
-        scratch[TJX + q] = -px - l_j * bx
-        scratch[TJY + q] = -py - l_j * by
-        scratch[TJZ + q] = -pz - l_j * bz
+        _give(contact, scratch, k, q, l_i, l_j, sx, sy, sz, px, py, pz)
 
 
 @jit(forceinline=True)
@@ -205,32 +232,15 @@ def _spring(contact, scratch, start, count, dt_drift, limits):
         mx = scratch[TIX + q]
         my = scratch[TIY + q]
         mz = scratch[TIZ + q]
-        distance = scratch[TJX + q]
-        receding = scratch[TJY + q]
         root = scratch[TJZ + q]
         delta = root * root
-        inv_sum = distance / (contact[A_I + k] + contact[A_J + k])
-        l_i = contact[A_I + k] * inv_sum
-        l_j = contact[A_J + k] * inv_sum
+        l_i, l_j, tx, ty, tz, wx, wy, wz, twist = _rates(contact, scratch, k, q)
         wix = scratch[WIX + q]
         wiy = scratch[WIY + q]
         wiz = scratch[WIZ + q]
         wjx = scratch[WJX + q]
         wjy = scratch[WJY + q]
         wjz = scratch[WJZ + q]
-        ux = l_i * wix + l_j * wjx
-        uy = l_i * wiy + l_j * wjy
-        uz = l_i * wiz + l_j * wjz
-        tx = scratch[DVX + q] - receding * mx - (uy * mz - uz * my)
-        ty = scratch[DVY + q] - receding * my - (uz * mx - ux * mz)
-        tz = scratch[DVZ + q] - receding * mz - (ux * my - uy * mx)
-        wx = wix - wjx
-        wy = wiy - wjy
-        wz = wiz - wjz
-        twist = wx * mx + wy * my + wz * mz
-        wx = wx - twist * mx
-        wy = wy - twist * my
-        wz = wz - twist * mz
         about = 0.5 * dt_drift * ((wix + wjx) * mx + (wiy + wjy) * my + (wiz + wjz) * mz)
 
         zx, zy, zz = _turned(contact[ZETA_X + k], contact[ZETA_Y + k], contact[ZETA_Z + k], ncx, ncy, ncz, about)
@@ -276,26 +286,14 @@ def _spring(contact, scratch, start, count, dt_drift, limits):
         contact[ROLL_Z + k] = rz
         contact[PHI + k] = kept
 
-        normal = scratch[FX + q]
         sx = -k_s * zx
         sy = -k_s * zy
         sz = -k_s * zz
-        scratch[FX + q] = normal * ncx + sx
-        scratch[FY + q] = normal * ncy + sy
-        scratch[FZ + q] = normal * ncz + sz
-        bx = ncy * sz - ncz * sy
-        by = ncz * sx - ncx * sz
-        bz = ncx * sy - ncy * sx
         e = k_t * kept
         px = -k_r * rx - e * ncx
         py = -k_r * ry - e * ncy
         pz = -k_r * rz - e * ncz
-        scratch[TIX + q] = px - l_i * bx
-        scratch[TIY + q] = py - l_i * by
-        scratch[TIZ + q] = pz - l_i * bz
-        scratch[TJX + q] = -px - l_j * bx
-        scratch[TJY + q] = -py - l_j * by
-        scratch[TJZ + q] = -pz - l_j * bz
+        _give(contact, scratch, k, q, l_i, l_j, sx, sy, sz, px, py, pz)
 
 
 @jit(forceinline=True)

@@ -3,36 +3,11 @@
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.engine.fragments import contact_pairs
+from ratd.engine.fragments import pieces
 from ratd.engine.layout import LARGEST_MONOMERS, MASS, MONOMERS, RADIUS, ROW, X, Y, Z
-from ratd.geometry.neighbours import connected_components
 from ratd.geometry.shape import shape_of
 
 _ROW = np.uint64(ROW)
-
-
-@jit
-def pieces(state):
-    """Masses [kg] and numbers of monomers of all pieces, and the piece of each monomer.
-
-    Returns
-    -------
-    mass : (f,) float64 array
-    members : (f,) int64 array
-    label : (n,) int64 array
-        0, 1, ... in the order of the first monomer of each piece.
-    """
-    n = state.counter[MONOMERS]
-    label = connected_components(n, contact_pairs(state))
-    number = 0
-    for k in range(n):
-        number = max(number, label[k] + 1)
-    mass = np.zeros(number)
-    members = np.zeros(number, dtype=np.int64)
-    for k in range(n):
-        mass[label[k]] += state.monomer[np.uint64(k) * _ROW + MASS]
-        members[label[k]] += 1
-    return mass, members, label
 
 
 def heaviest_pieces(state, number=2):
