@@ -7,7 +7,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.parts import part
 from ratd.engine.forces import contact_forces
-from ratd.engine.layout import DT, DT_DRIFT, STEPS, TIME
+from ratd.engine.layout import DT, DT_DRIFT, FASTEST, STEPS, TIME
 
 SAMPLE_EVERY = 64
 """Steps between two samples that a drive may take for its means."""
@@ -34,7 +34,19 @@ class Leapfrog(NamedTuple):
     timestep: float
     implicit_damping: bool
 
-    def step(self, state, law, drive, box, scratch):
+    def set_step(self, state, shortest):
+        if self.timestep > 0.0:
+            state.scalar[DT] = self.timestep
+        elif shortest < np.inf:
+            state.scalar[DT] = self.timestep_factor * shortest
+
+    def prepare(self, state, law):
+        return 0
+
+    def renew(self, state, law, work):
+        return work
+
+    def step(self, state, law, drive, box, scratch, work):
         scalar = state.scalar
         dt = scalar[DT]
         # From the middle of the last move to that of the next; half a step from the start, where nothing has moved.
@@ -42,11 +54,17 @@ class Leapfrog(NamedTuple):
         ended = contact_forces(state, law, box, scratch, kick)
         if state.counter[STEPS] % SAMPLE_EVERY == 0:
             drive.sample(state, law)
+        drive.load(state, kick)
         drive.move(state, box, kick, dt)
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
         state.counter[STEPS] += 1
         return ended
+
+    def limit(self, state, law, drive, least, work):
+        scalar = state.scalar
+        if self.timestep == 0.0 and scalar[FASTEST] * scalar[DT] > self.timestep_factor * least:
+            scalar[DT] = self.timestep_factor * least / scalar[FASTEST]
 
 
 def leapfrog(*, timestep_factor=0.125, timestep=None, damping="implicit"):

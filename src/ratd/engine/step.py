@@ -94,6 +94,7 @@ def advance(state, law, drive, box, integrator, until):
     near, n_near = near_pairs(state, box, far, near_reach)
     travel = 0.0
     drive.follow(state, False)
+    work = integrator.prepare(state, law)
     while True:
         if counter[LARGEST_CONTACTS] <= until.fewest_contacts:
             return FEW_CONTACTS
@@ -104,7 +105,7 @@ def advance(state, law, drive, box, integrator, until):
         if counter[CONTACTS] + n_near > state.pair_i.shape[0]:
             return FULL
 
-        ended = integrator.step(state, law, drive, box, scratch)
+        ended = integrator.step(state, law, drive, box, scratch, work)
         dt = scalar[DT_DRIFT]
         if not scalar[FASTEST] < np.inf:
             return NOT_FINITE
@@ -127,6 +128,7 @@ def advance(state, law, drive, box, integrator, until):
         if changed:
             update_contact_rates(state, law, integrator)
             drive.follow(state, True)
+            work = integrator.renew(state, law, work)
 
         travel += scalar[FASTEST] * dt
         scale = growth(box, scalar, near_edges)
@@ -152,9 +154,8 @@ def advance(state, law, drive, box, integrator, until):
                 if gone > 0:
                     update_contact_rates(state, law, integrator)
                     drive.follow(state, True)
-        limit = integrator.timestep_factor * least
-        if integrator.timestep == 0.0 and scalar[FASTEST] * scalar[DT] > limit:
-            scalar[DT] = limit / scalar[FASTEST]
+                    work = integrator.renew(state, law, work)
+        integrator.limit(state, law, drive, least, work)
 
 
 def run(state, law, drive, box, integrator, until):
