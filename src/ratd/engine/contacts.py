@@ -6,7 +6,8 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.engine.layout import (
-    CONTACTS, DT, INV_MASS, LOST_BROKEN, LOST_DAMP, LOST_MADE, MASS, MONOMERS, RADIUS, ROW, WX, WY, WZ, X, Y, Z,
+    CONTACTS, DT, DT_CONTACTS, INV_MASS, LOST_BROKEN, LOST_DAMP, LOST_MADE, MASS, MONOMERS, RADIUS, ROW, WX, WY, WZ,
+    X, Y, Z,
 )  # fmt: skip
 from ratd.laws.contact_fields import (
     A_I, A_J, DAMPING_RATE, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX, NCY, NCZ, STEP,
@@ -197,3 +198,4 @@ def update_contact_rates(state, law, integrator):
         state.scalar[DT] = integrator.timestep
     elif n_contacts > 0:
         state.scalar[DT] = integrator.timestep_factor * step
+        state.scalar[DT_CONTACTS] = state.scalar[DT]

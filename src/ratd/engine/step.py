@@ -8,7 +8,7 @@ from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, contact_start, get_image, remove_contact, update_contact_rates
 from ratd.engine.layout import (
-    CLOCK, CONTACTS, DT, DT_DRIFT, FASTEST, LARGEST_CONTACTS, SEARCHES, STEPS, TIME,
+    CLOCK, CONTACTS, DT, DT_CONTACTS, DT_DRIFT, FASTEST, LARGEST_CONTACTS, SEARCHES, STEPS, TIME,
 )  # fmt: skip
 from ratd.engine.lists import (
     FAR,
@@ -33,6 +33,9 @@ a velocity that is no finite number."""
 
 
 NEVER = np.iinfo(np.int64).max
+
+GROW_EVERY, GROWTH = 64, 1.25
+"""A step that the greatest speed has shortened grows by this factor after so many steps, up to what is allowed."""
 
 
 class Until(NamedTuple):
@@ -125,8 +128,7 @@ def advance(state, law, drive, box, integrator, until):
                 append_contact(state, law, box, touching[p, 0], touching[p, 1], image, dt, False)
             changed = True
         if changed:
-            update_contact_rates(state, law, integrator)
-            drive.follow(state, True)
+            _take_note(state, law, drive, integrator)
 
         travel += scalar[FASTEST] * dt
         scale = growth(box, scalar, near_edges)
@@ -150,11 +152,29 @@ def advance(state, law, drive, box, integrator, until):
                 near, n_near = near_pairs(state, box, far, near_reach)
                 travel = 0.0
                 if gone > 0:
-                    update_contact_rates(state, law, integrator)
-                    drive.follow(state, True)
-        limit = integrator.timestep_factor * least
-        if integrator.timestep == 0.0 and scalar[FASTEST] * scalar[DT] > limit:
-            scalar[DT] = limit / scalar[FASTEST]
+                    _take_note(state, law, drive, integrator)
+        if integrator.timestep == 0.0:
+            _limit_step(state, integrator.timestep_factor * least)
+
+
+@jit
+def _take_note(state, law, drive, integrator):
+    """What follows from contacts that were made, broken or dropped."""
+    update_contact_rates(state, law, integrator)
+    drive.follow(state, True)
+
+
+@jit
+def _limit_step(state, farthest):
+    """Let no monomer move farther than this [m] in the next step; a step that is shorter than need be grows.
+
+    When it grows depends on the number of steps alone, so that a run in pieces has the bits of one at once.
+    """
+    scalar = state.scalar
+    if state.counter[STEPS] % GROW_EVERY == 0 and scalar[DT] < scalar[DT_CONTACTS]:
+        scalar[DT] = min(GROWTH * scalar[DT], scalar[DT_CONTACTS])
+    if scalar[FASTEST] * scalar[DT] > farthest:
+        scalar[DT] = farthest / scalar[FASTEST]
 
 
 def run(state, law, drive, box, integrator, until):
