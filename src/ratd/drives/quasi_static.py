@@ -92,7 +92,9 @@ class QuasiStatic(NamedTuple):
     def move(self, state, box, kick, dt):
         drive = state.drive
         omega, unwind = drive[OMEGA], drive[UNWIND]
-        momentum, inertia, energy, fastest = kick_and_drift(state, kick, dt, unwind, math.exp(-self.drag * omega * kick))
+        momentum, inertia, energy, fastest = kick_and_drift(
+            state, kick, dt, unwind, math.exp(-self.drag * omega * kick)
+        )
         inertia += drive[OWN_INERTIA]
         reference = max(omega, self.omega_1)
         unrest = math.sqrt(2.0 * energy / inertia) / reference
@@ -171,9 +173,7 @@ def add_frame_forces(state, omega):
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
-        pull = add4(
-            multiply4(centrifugal, load4(monomer, r + X)), multiply4(coriolis, swap4(load4(monomer, r + VX)))
-        )
+        pull = add4(multiply4(centrifugal, load4(monomer, r + X)), multiply4(coriolis, swap4(load4(monomer, r + VX))))
         store4(force, q + FORCE_X, add4(load4(force, q + FORCE_X), scale4(monomer[r + MASS], pull)))
         turn = scale4(monomer[r + INERTIA], multiply4(turning, swap4(load4(monomer, r + WX))))
         store4(force, q + TORQUE_X, add4(load4(force, q + TORQUE_X), turn))

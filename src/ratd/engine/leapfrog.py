@@ -5,12 +5,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ratd.base.errors import InputError
+from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.engine.forces import contact_forces
-from ratd.engine.layout import DT, DT_DRIFT, FASTEST, STEPS, TIME
+from ratd.engine.layout import DT, DT_CONTACTS, DT_DRIFT, FASTEST, STEPS, TIME
 
 SAMPLE_EVERY = 64
 """Steps between two samples that a drive may take for its means."""
+GROW_EVERY, GROWTH = 64, 1.25
+"""A step that the greatest speed has shortened grows by this factor after so many steps, up to what is allowed."""
 DAMPINGS = ("implicit", "explicit")
 
 
@@ -38,7 +41,7 @@ class Leapfrog(NamedTuple):
         if self.timestep > 0.0:
             state.scalar[DT] = self.timestep
         elif shortest < np.inf:
-            state.scalar[DT] = self.timestep_factor * shortest
+            state.scalar[DT] = state.scalar[DT_CONTACTS] = self.timestep_factor * shortest
 
     def prepare(self, state, law):
         return 0
@@ -62,9 +65,21 @@ class Leapfrog(NamedTuple):
         return ended
 
     def limit(self, state, law, drive, least, work):
-        scalar = state.scalar
-        if self.timestep == 0.0 and scalar[FASTEST] * scalar[DT] > self.timestep_factor * least:
-            scalar[DT] = self.timestep_factor * least / scalar[FASTEST]
+        if self.timestep == 0.0:
+            limit_step(state, self.timestep_factor * least)
+
+
+@jit
+def limit_step(state, farthest):
+    """Let no monomer move farther than this [m] in the next step; a step that is shorter than need be grows.
+
+    When it grows depends on the number of steps alone, so that a run in pieces has the bits of one at once.
+    """
+    scalar = state.scalar
+    if state.counter[STEPS] % GROW_EVERY == 0 and scalar[DT] < scalar[DT_CONTACTS]:
+        scalar[DT] = min(GROWTH * scalar[DT], scalar[DT_CONTACTS])
+    if scalar[FASTEST] * scalar[DT] > farthest:
+        scalar[DT] = farthest / scalar[FASTEST]
 
 
 def leapfrog(*, timestep_factor=0.125, timestep=None, damping="implicit"):

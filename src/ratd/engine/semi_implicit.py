@@ -18,11 +18,11 @@ from ratd.engine.block_factor import BLOCK, PADDED, BlockFactor, factorise, find
 from ratd.engine.contacts import contact_start, difference, get_image
 from ratd.engine.forces import contact_forces
 from ratd.engine.layout import (
-    CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, MASS, MONOMERS, RADIUS, ROW, STEPS,
     TIME, TORQUE_X, VX, WX,
 )  # fmt: skip
 from ratd.engine.leapfrog import SAMPLE_EVERY
-from ratd.laws.contact_fields import LANES, NCX, NCY, NCZ
+from ratd.laws.contact_fields import NCX, NCY, NCZ
 
 RUNG = math.sqrt(0.5)
 """Steps are the longest one times a power of this, so that the matrix seldom changes."""

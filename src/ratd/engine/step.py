@@ -126,8 +126,7 @@ def advance(state, law, drive, box, integrator, until):
                 append_contact(state, law, box, touching[p, 0], touching[p, 1], image, dt, False)
             changed = True
         if changed:
-            update_contact_rates(state, law, integrator)
-            drive.follow(state, True)
+            _take_note(state, law, drive, integrator)
             work = integrator.renew(state, law, work)
 
         travel += scalar[FASTEST] * dt
@@ -152,10 +151,16 @@ def advance(state, law, drive, box, integrator, until):
                 near, n_near = near_pairs(state, box, far, near_reach)
                 travel = 0.0
                 if gone > 0:
-                    update_contact_rates(state, law, integrator)
-                    drive.follow(state, True)
+                    _take_note(state, law, drive, integrator)
                     work = integrator.renew(state, law, work)
         integrator.limit(state, law, drive, least, work)
+
+
+@jit
+def _take_note(state, law, drive, integrator):
+    """What follows from contacts that were made, broken or dropped."""
+    update_contact_rates(state, law, integrator)
+    drive.follow(state, True)
 
 
 def run(state, law, drive, box, integrator, until):
