@@ -27,6 +27,7 @@ _HOME = {
     "evolve": "experiments.evolve",
     "fit_ensemble": "experiments.spin_up.eq33",
     "grow": "aggregates.growth",
+    "grow_bcca": "aggregates.clusters",
     "mix": "base.materials",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
