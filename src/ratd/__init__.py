@@ -22,6 +22,8 @@ _HOME = {
     "FileError": "base.errors",
     "MATERIALS": "base.materials",
     "Material": "base.materials",
+    "compress": "experiments.compression.run",
+    "compressive_strength": "experiments.compression.strength",
     "cut_bound": "experiments.spin_up.cut_bound",
     "disruption": "experiments.spin_up.marks",
     "evolve": "experiments.evolve",
@@ -32,6 +34,7 @@ _HOME = {
     "open_space": "geometry.box",
     "periodic": "geometry.box",
     "spin_up": "experiments.spin_up.run",
+    "stretch": "experiments.compression.stretch",
 }
 __all__ = sorted([*_HOME, "laws"])
 
