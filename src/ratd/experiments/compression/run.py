@@ -154,7 +154,8 @@ def compress(
     number = math.ceil(math.log(until_phi / first) / math.log(RECORD_STEP))
     phi = first * np.exp(np.log(until_phi / first) * np.arange(1, number + 1) / number)
     marks = np.log(first / phi) / (3.0 * box.rate_x)
-    wanted = [int(np.searchsorted(phi, value)) + 1 for value in snapshots if first <= value <= until_phi]
+    reached = [value for value in snapshots if first <= value <= until_phi]
+    wanted = [int(np.searchsorted(phi, value * (1.0 - 1e-9))) + 1 for value in reached]
     state, key = prepared(cluster, parts, (until_phi, tuple(wanted)))
 
     def tell(row, seconds_to_go):
@@ -262,5 +263,3 @@ def _add_snapshots(run, kept, wanted):
     run["snapshot_box_length"] = ("snapshot", run["box_length"].values[at, 0], about)
     about = {"units": "m", "long_name": "centres at the snapshot, not wrapped into the box"}
     run["snapshot_position"] = (("snapshot", "monomer", "axis"), kept, about)
-
-
