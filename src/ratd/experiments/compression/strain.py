@@ -9,7 +9,7 @@ import xarray as xr
 
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
-from ratd.engine.layout import CONTACTS, DT, MASS, RADIUS, STEPS, TIME, X
+from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
 from ratd.engine.state import State, monomer_rows
 from ratd.engine.step import run, until
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
@@ -35,7 +35,7 @@ RECORDS = {
     **{f"stored_{mode}": ("", "J", f"potential energy of the contacts, {mode}") for mode in STORED},
     **{f"dissipated_{way}": ("", "J", f"energy dissipated so far, {way}") for way in DISSIPATED},
     "work": ("", "J", "work of the box so far, -int P dV"),
-    "energy_residual": ("", "J", "what the balance of energy lacks: kinetic + stored + dissipated - work since the start"),
+    "energy_residual": ("", "J", "what the balance lacks: kinetic + stored + dissipated - work, since the start"),
 }  # fmt: skip
 SIZES = {"": 1, "axis": 3, "component": 6}
 LABELS = {"axis": ["x", "y", "z"], "component": list(COMPONENTS)}
@@ -125,7 +125,7 @@ def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=
             done = (rows[-1][0] - begun) / (marks[-1] - begun)
             tell(as_dict(rows[-1]), (now - start) * (1.0 / done - 1.0))
             told = now
-    kept = np.array(kept) if kept else np.zeros((0, state.counter[1], 3))
+    kept = np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
     return state, np.array(rows), kept
 
 

@@ -1,0 +1,2 @@
+def draw(files, settings):
+    raise NotImplementedError
