@@ -77,7 +77,7 @@ rule compression_set:
             "ratd.experiments.compression.tables:run_set",
             "compression_set",
         ),
-        settings={},
+        settings=lambda w: COMPRESSION.grow(w.set),
     message:
         "Tabulate the set {wildcards.set}"
     script:

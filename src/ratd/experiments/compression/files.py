@@ -1,4 +1,4 @@
-"""Files of the compression: clusters, runs, and the tables of a set of runs, of which figures are drawn.
+"""Files of the compression: clusters and runs.
 
 The pipeline finds these kinds here, see `ratd.pipeline.kinds`.
 """
@@ -8,22 +8,21 @@ import xarray as xr
 
 from ratd.aggregates.grain import Grain
 from ratd.experiments.compression.strain import LABELS, RECORDS
-from ratd.observables.energy import DISSIPATED, STORED
 from ratd.observables.structure import radius_of_gyration
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["cluster_row", "read_cluster", "read_run", "run_row", "runs"]
+__all__ = ["MONOMER", "REFERENCE", "RUN", "cluster_row", "read_cluster", "read_run", "run_row", "runs"]
 
 REFERENCE = "Kataoka et al. (2013), A&A 554, A4"
-_MONOMER = {
+MONOMER = {
     "x": ("m", "position of the centre along x"),
     "y": ("m", "position of the centre along y"),
     "z": ("m", "position of the centre along z"),
     "radius": ("m", "radius of the monomer"),
 }
-_RUN = {
+RUN = {
     "monomer_radius": ("m", "radius r_0 of the equal monomers, or that of the monomer of mean volume"),
     "time_unit": ("s", "t_0"),
     "rolling_pressure": ("Pa", "P_0 = E_roll/r_0^3"),
@@ -42,7 +41,7 @@ register(
             "seed": Variable((ROW,), "i8", "1", "seed of the cluster"),
             **row_sizes(("monomer",)),
             **over((ROW,), {"radius_of_gyration": ("m", "radius of gyration")}),
-            **over(("monomer",), _MONOMER),
+            **over(("monomer",), MONOMER),
         },
         attributes=("material",),
         ragged=("monomer",),
@@ -68,7 +67,7 @@ register(
             "seed": Variable((ROW,), "i8", "1", "seed of the cluster"),
             **row_sizes(("record", "snapshot", "snapshot_monomer", "monomer")),
             **over((ROW,), {"n_monomers": ("1", "number of monomers"), "steps": ("1", "number of steps")}, dtype="i8"),
-            **over((ROW,), _RUN),
+            **over((ROW,), RUN),
             **_record_variables(),
             **over(
                 ("snapshot",),
@@ -80,95 +79,12 @@ register(
             "snapshot_position": Variable(
                 ("snapshot_monomer", "axis"), "f8", "m", "centres at the snapshots, one after the other, not wrapped"
             ),
-            **over(("monomer",), {"radius": _MONOMER["radius"]}),
+            **over(("monomer",), {"radius": MONOMER["radius"]}),
         },
         attributes=("material", "law", "integrator", "scheme"),
         ragged=("record", "snapshot", "snapshot_monomer", "monomer"),
-        of_row=("seed", "n_monomers", "steps", *_RUN),
+        of_row=("seed", "n_monomers", "steps", *RUN),
         references=REFERENCE,
-    ),
-)
-
-_BY_PHI = {
-    "pressure": ("Pa", "pressure"),
-    **{f"pressure_{name}": ("Pa", f"component {name} of the pressure") for name in LABELS["component"]},
-    "n_contacts": ("1", "number of contacts"),
-    **{f"stored_{mode}": ("J", f"potential energy of the contacts, {mode}") for mode in STORED},
-    **{f"dissipated_{way}": ("J", f"energy dissipated so far, {way}") for way in DISSIPATED},
-    "work": ("J", "work of the box so far"),
-    "energy_residual": ("J", "what the balance of energy lacks"),
-}
-SEED, PHI, SNAPSHOT, DISTANCE = "seed_number", "phi_bin", "snapshot", "distance_number"
-register(
-    "compression_set",
-    Kind(
-        "Compression of clusters with equal settings and different seeds",
-        {
-            **MATERIAL,
-            **over((SEED,), {"seed": ("1", "seed of the cluster"), "steps": ("1", "number of steps")}, dtype="i8"),
-            **over(
-                (SEED,), {name: about for name, about in _RUN.items() if name not in ("monomer_radius", "time_unit")}
-            ),
-            **over((PHI,), {"phi": ("1", "filling factor, middle of the bin")}),
-            **over((SEED, PHI), _BY_PHI, nan=True),
-            **over((SNAPSHOT,), {"snapshot_phi": ("1", "filling factor of the snapshots, as asked for")}),
-            **over((DISTANCE,), {"distance": ("1", "distance from the centre of a monomer, over r_0")}),
-            **over(
-                (SEED, SNAPSHOT, DISTANCE),
-                {"number_within": ("1", "mean number of centres within this distance, itself and copies included")},
-                nan=True,
-            ),
-            **over(
-                (),
-                {
-                    "monomer_radius": _RUN["monomer_radius"],
-                    "time_unit": _RUN["time_unit"],
-                    "mean_radius": ("m", "mean radius of the monomers"),
-                    "mean_square_radius": ("m2", "mean square of the radius"),
-                    "mean_rolling_energy": ("J", "mean over the contacts of the cluster of E_roll"),
-                },
-            ),
-            "n_monomers": Variable((), "i8", "1", "number of monomers"),
-        },
-        attributes=("material", "law", "integrator", "scheme"),
-        references=REFERENCE,
-    ),
-)
-register(
-    "compression_snapshots",
-    Kind(
-        "Snapshots of a cluster in its compression",
-        {
-            **over((SNAPSHOT,), {"phi": ("1", "filling factor"), "box_length": ("m", "edge of the box")}),
-            **over((SNAPSHOT, "monomer"), {axis: _MONOMER[axis] for axis in "xyz"}),
-            **over(("monomer",), {"radius": _MONOMER["radius"]}),
-        },
-        references=REFERENCE,
-    ),
-)
-register(
-    "tension_set",
-    Kind(
-        "Compressed clusters pulled until they come apart",
-        {
-            **over(
-                ("entry",),
-                {
-                    "phi": ("1", "filling factor at which the pulling began"),
-                    "strain_rate": ("1", "rate of the pulling in units of the compression: H t_0/2"),
-                    "strength": ("Pa", "greatest tension"),
-                    "phi_strength": ("1", "filling factor there"),
-                    "residual": ("Pa", "pressure left at rest before the pulling"),
-                    "surface_energy": ("J m-2", "gamma"),
-                    "monomer_radius": ("m", "r_0"),
-                },
-            ),
-            **over(
-                ("entry",),
-                {"seed": ("1", "seed"), "n_axes": ("1", "axes pulled"), "n_monomers": ("1", "N")},
-                dtype="i8",
-            ),
-        },
     ),
 )
 
@@ -200,7 +116,7 @@ def run_row(run):
         From `ratd.compress`.
     """
     row = xr.Dataset(
-        attrs=_kept(run.attrs, {"seed", "n_monomers", "steps", *_RUN, "law", "integrator", "scheme", "material"})
+        attrs=_kept(run.attrs, {"seed", "n_monomers", "steps", *RUN, "law", "integrator", "scheme", "material"})
     )
     for name in (*RECORDS, "snapshot_phi", "snapshot_box_length", "radius"):
         row[name] = run[name].drop_vars([dim for dim in run[name].dims if dim in LABELS])

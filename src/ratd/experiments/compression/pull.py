@@ -7,8 +7,35 @@ from ratd.experiments.compression.files import read_cluster
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.squeeze import integrator_of, law_of, squeezed, told
 from ratd.experiments.compression.stretch import stretch
+from ratd.pipeline.kinds import Kind, over, register
 
 __all__ = ["pulled", "run"]
+
+register(
+    "tension_set",
+    Kind(
+        "Compressed clusters pulled until they come apart",
+        {
+            **over(
+                ("entry",),
+                {
+                    "phi": ("1", "filling factor at which the pulling began"),
+                    "strain_rate": ("1", "rate of the pulling in units of the compression: H t_0/2"),
+                    "strength": ("Pa", "greatest tension"),
+                    "phi_strength": ("1", "filling factor there"),
+                    "residual": ("Pa", "pressure left at rest before the pulling"),
+                    "surface_energy": ("J m-2", "gamma"),
+                    "monomer_radius": ("m", "r_0"),
+                },
+            ),
+            **over(
+                ("entry",),
+                {"seed": ("1", "seed"), "n_axes": ("1", "axes pulled"), "n_monomers": ("1", "N")},
+                dtype="i8",
+            ),
+        },
+    ),
+)
 
 
 def pulled(grain, settings, phi, say=None):

@@ -7,13 +7,16 @@ import xarray as xr
 
 from ratd.aggregates.grain import Grain
 from ratd.base.materials import Material
-from ratd.experiments.compression.files import DISTANCE, PHI, SEED, SNAPSHOT, read_cluster, read_run, runs
+from ratd.base.statistics import mean_of
+from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
+from ratd.experiments.compression.grow import grown
 from ratd.experiments.compression.strain import LABELS
 from ratd.laws.contact_constants import reduced_radius, rolling_energy
-from ratd.observables.structure import cumulative_number
+from ratd.observables.energy import DISSIPATED, STORED
+from ratd.observables.structure import cumulative_number, radius_of_gyration
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
-from ratd.pipeline.kinds import MATERIAL, kind_of
+from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
 
 __all__ = ["BIN", "DISTANCES", "bins", "in_bins", "run_set", "set_of", "snapshots"]
 
@@ -22,6 +25,70 @@ BIN = 1.04
 DISTANCES = np.round(2.0 * 1.12 ** np.arange(44), 3)
 """Distances r/r_0 at which N(<r) is tabulated, from 2 to 262."""
 OF_RUN = ("phi_start", "static_from", "radius_of_gyration", "rolling_pressure", "strain_rate", "timestep")
+
+
+GYRATION_SEEDS = 60
+"""Clusters that are grown for the mean radius of gyration, which takes far less time than a run."""
+
+_BY_PHI = {
+    "pressure": ("Pa", "pressure"),
+    **{f"pressure_{name}": ("Pa", f"component {name} of the pressure") for name in LABELS["component"]},
+    "n_contacts": ("1", "number of contacts"),
+    **{f"stored_{mode}": ("J", f"potential energy of the contacts, {mode}") for mode in STORED},
+    **{f"dissipated_{way}": ("J", f"energy dissipated so far, {way}") for way in DISSIPATED},
+    "work": ("J", "work of the box so far"),
+    "energy_residual": ("J", "what the balance of energy lacks"),
+}
+SEED, PHI, SNAPSHOT, DISTANCE = "seed_number", "phi_bin", "snapshot", "distance_number"
+register(
+    "compression_set",
+    Kind(
+        "Compression of clusters with equal settings and different seeds",
+        {
+            **MATERIAL,
+            **over((SEED,), {"seed": ("1", "seed of the cluster"), "steps": ("1", "number of steps")}, dtype="i8"),
+            **over(
+                (SEED,), {name: about for name, about in RUN.items() if name not in ("monomer_radius", "time_unit")}
+            ),
+            **over((PHI,), {"phi": ("1", "filling factor, middle of the bin")}),
+            **over((SEED, PHI), _BY_PHI, nan=True),
+            **over((SNAPSHOT,), {"snapshot_phi": ("1", "filling factor of the snapshots, as asked for")}),
+            **over((DISTANCE,), {"distance": ("1", "distance from the centre of a monomer, over r_0")}),
+            **over(
+                (SEED, SNAPSHOT, DISTANCE),
+                {"number_within": ("1", "mean number of centres within this distance, itself and copies included")},
+                nan=True,
+            ),
+            **over(
+                (),
+                {
+                    "monomer_radius": RUN["monomer_radius"],
+                    "time_unit": RUN["time_unit"],
+                    "mean_radius": ("m", "mean radius of the monomers"),
+                    "mean_square_radius": ("m2", "mean square of the radius"),
+                    "mean_square_gyration": ("m2", "mean square of the radius of gyration of such clusters"),
+                    "mean_square_gyration_error": ("m2", "its standard error"),
+                    "mean_rolling_energy": ("J", "mean over the contacts of the cluster of E_roll"),
+                },
+            ),
+            "n_monomers": Variable((), "i8", "1", "number of monomers"),
+        },
+        attributes=("material", "law", "integrator", "scheme"),
+        references=REFERENCE,
+    ),
+)
+register(
+    "compression_snapshots",
+    Kind(
+        "Snapshots of a cluster in its compression",
+        {
+            **over((SNAPSHOT,), {"phi": ("1", "filling factor"), "box_length": ("m", "edge of the box")}),
+            **over((SNAPSHOT, "monomer"), {axis: MONOMER[axis] for axis in "xyz"}),
+            **over(("monomer",), {"radius": MONOMER["radius"]}),
+        },
+        references=REFERENCE,
+    ),
+)
 
 
 def bins(phi):
@@ -128,8 +195,14 @@ def _add_structure(table, found):
     table["number_within"] = ((SEED, SNAPSHOT, DISTANCE), numbers)
 
 
+def gyration(settings):
+    """Mean square of the radius of gyration [m2] of `GYRATION_SEEDS` clusters grown as settings say, and its error."""
+    clusters = (grown(settings, seed) for seed in range(GYRATION_SEEDS))
+    return mean_of([radius_of_gyration(cluster.position, cluster.mass) ** 2 for cluster in clusters])
+
+
 def run_set(files, settings, say):
-    """Table of a set from the files of its runs; parameters as of `ratd.experiments.spin_up.tables.ensemble`."""
+    """Table of a set from the files of its runs and clusters; the settings are those of the growth."""
     found, clusters = [], []
     for path, cluster in zip(files["runs"], files["clusters"], strict=True):
         file = io.read(path, "compression")
@@ -139,6 +212,7 @@ def run_set(files, settings, say):
         clusters.append(read_cluster(cluster))
         assert clusters[-1].material == material
     table = set_of(found, clusters)
+    table["mean_square_gyration"], table["mean_square_gyration_error"] = gyration(settings)
     say(f"{len(found)} runs of {table['n_monomers'].item()} monomers")
     return {"compression_set": typed(table)}
 
