@@ -1,4 +1,4 @@
-"""Strengths of aggregates of equal monomers, as fitted by others to simulations and experiments."""
+"""Strengths of aggregates, as fitted by others to simulations and experiments, and the tension in a turning one."""
 
 import math
 
@@ -11,6 +11,7 @@ __all__ = [
     "compressive_strength_kataoka2013",
     "compressive_strength_tatsuuma2023",
     "filling_factor_guettler2009",
+    "midplane_tension",
     "rolling_pressure",
     "sound_speed_kataoka2013",
     "tensile_strength_tatsuuma2019",
@@ -99,3 +100,22 @@ def tensile_strength_tatsuuma2019(surface_energy, monomer_radius, filling_factor
     Tatsuuma, Kataoka & Tanaka 2019, ApJ 874, 159: a fit to pulled aggregates of equal monomers.
     """
     return 0.951 * surface_energy / monomer_radius * filling_factor**1.8
+
+
+def midplane_tension(omega, density, filling_factor, outer_radius):
+    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
+
+    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
+
+    Parameters
+    ----------
+    omega : float
+        Angular velocity [rad s-1].
+    density : float
+        rho [kg m-3] of the solid.
+    filling_factor : float
+        phi [1].
+    outer_radius : float
+        a_out [m].
+    """
+    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2

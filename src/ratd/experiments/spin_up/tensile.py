@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.strength import tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import size_key
 
 __all__ = [
@@ -17,7 +17,6 @@ __all__ = [
     "eq27",
     "fractal_exponent",
     "midplane_bound",
-    "midplane_tension",
     "predictions",
     "tensile_strength_greenberg1995",
 ]
@@ -176,25 +175,6 @@ def _at_rest(cells, grown):
     found = groups[list(_DEPENDS_ON)].mean().reindex(wanted)
     found["fractal_dimension"] = groups["fractal_dimension"].median()
     return {name: found[name].to_numpy(float) for name in _DEPENDS_ON}
-
-
-def midplane_tension(omega, density, filling_factor, outer_radius):
-    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
-
-    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
-
-    Parameters
-    ----------
-    omega : float
-        Angular velocity [rad s-1].
-    density : float
-        rho [kg m-3] of the solid.
-    filling_factor : float
-        phi [1].
-    outer_radius : float
-        a_out [m].
-    """
-    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2
 
 
 def midplane_bound(grain):

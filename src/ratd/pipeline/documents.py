@@ -1,0 +1,81 @@
+"""Documents: a template that a person wrote, with slots for numbers.
+
+A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
+error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. A *verdict* is ``{{name=holds}}``: it prints
+the word, and is an error when the data give another one. Then a person has to read the sentence again.
+"""
+
+import math
+import re
+from typing import NamedTuple
+
+from ratd.base.errors import InputError
+
+__all__ = ["Measured", "fill", "slots"]
+
+_SLOT = re.compile(r"\{\{\s*([A-Za-z0-9_.-]+)\s*(?:([:=])([^}]*))?\}\}")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+class Measured(NamedTuple):
+    """A number with its standard error, NaN where it has none."""
+
+    value: float
+    error: float = math.nan
+
+
+def slots(template):
+    """Names of the slots of a template, in their order, list of str."""
+    return [name for name, _, _ in _SLOT.findall(template)]
+
+
+def fill(template, values):
+    """Text of a template with its slots filled.
+
+    Parameters
+    ----------
+    template : str
+    values : dict
+        Name -> number, `Measured`, or text; a verdict is a text.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        One sentence: a slot that no value fits, a number that is not finite, or a verdict that is not the one in the
+        template.
+    """
+    return _SLOT.sub(lambda found: _filled(values, *found.groups()), template)
+
+
+def _filled(values, name, sign, form):
+    if name not in values:
+        raise InputError(f"the slot {name} of the template has no value; allowed: {', '.join(sorted(values))}")
+    value = values[name]
+    if sign == "=":
+        if value != form.strip():
+            raise InputError(
+                f"the verdict {name} is {value!r}, but the template says {form.strip()!r}: read the sentences around "
+                "it again"
+            )
+        return form.strip()
+    if isinstance(value, str):
+        return value
+    form = (form or "").strip()
+    error = value.error if isinstance(value, Measured) else math.nan
+    value = value.value if isinstance(value, Measured) else value
+    if not math.isfinite(value):
+        raise InputError(f"the value of {name} is {value}, no finite number")
+    if not form.endswith("±"):
+        return _number(value, form)
+    text = _number(value, form[:-1])
+    return f"{text} ± {_number(error, form[:-1])}" if math.isfinite(error) else text
+
+
+def _number(value, form):
+    text = format(value, form).replace("-", "−")
+    mantissa, e, exponent = text.partition("e")
+    return f"{mantissa}·10{str(int(exponent.replace('−', '-'))).translate(_RAISED)}" if e else text
