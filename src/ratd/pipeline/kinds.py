@@ -46,6 +46,7 @@ HOMES = {
             "damping",
             "literal",
             "theory",
+            "compression",
             "growth",
             "relaxation",
             "energy",
