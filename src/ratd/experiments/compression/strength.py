@@ -63,7 +63,7 @@ def _within(table, low, high):
     inside = (phi >= low) & (phi <= high)
     pressure = table["pressure"].values[:, inside]
     whole = np.isfinite(pressure).all(axis=1)
-    if not inside.any() or not whole.any():
+    if not inside.any() or not whole.any() or phi.max() * BIN < high / NEAR:
         raise InputError(f"no run covers the filling factors from {low:g} to {high:g}.")
     return phi[inside], pressure[whole]
 
