@@ -215,8 +215,14 @@ def slope_of_structure(table, snapshot, low=2.5, high=8.0):
     """d ln N(<r)/d ln r between two distances in r_0, mean over seeds, a float."""
     distance = table["distance"].values
     inside = (distance >= low) & (distance <= high)
-    number = np.nanmean(table["number_within"].values[:, snapshot], axis=0)[inside]
-    return float(np.polyfit(np.log(distance[inside]), np.log(number), 1)[0])
+    return log_slope(distance[inside], table["number_within"].values[:, snapshot, inside])
+
+
+def log_slope(x, y):
+    """d ln y/d ln x of the mean of rows y over what is finite; NaN where fewer than two points are."""
+    y = y[np.isfinite(y).any(axis=1)]
+    there = np.isfinite(y).all(axis=0) if len(y) else np.zeros(len(x), dtype=bool)
+    return float(np.polyfit(np.log(x[there]), np.log(y[:, there].mean(axis=0)), 1)[0]) if there.sum() > 1 else np.nan
 
 
 def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
