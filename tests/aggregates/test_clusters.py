@@ -97,7 +97,10 @@ def test_unequal_radii_are_those_given():
         ({"n": 1000}, r"n is 1000; it must be a power of 2 from 2 on \(512 or 1024\)"),
         ({"n": 1}, "n is 1; it must be a power of 2 from 2 on,"),
         ({"n": 64.0}, "n is 64.0; it must be a power of 2"),
-        ({"n": 64, "material": "q-S"}, "radius is None; it must be a number above 0, in m, and may be left out for ice"),
+        (
+            {"n": 64, "material": "q-S"},
+            "radius is None; it must be a number above 0, in m, and may be left out for ice",
+        ),
         ({"n": 64, "radius": -1.0}, "radius is -1.0; it must be a number above 0"),
         ({"n": 64, "radii": [1e-7] * 63}, "radii must be 64 finite numbers above 0"),
         ({"n": 64, "radii": [1e-7] * 64, "radius": 1e-7}, "radius and radii are both given"),

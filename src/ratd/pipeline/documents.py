@@ -3,10 +3,14 @@
 A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
 error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. A *verdict* is ``{{name=holds}}``: it prints
 the word, and is an error when the data give another one. Then a person has to read the sentence again.
+
+Lines between ``<!-- if name -->`` (or ``if not name``) and ``<!-- end -->`` stand only where there are data of this
+name, that is values that begin with ``name.``; such parts may stand in each other.
 """
 
 import math
 import re
+from difflib import get_close_matches
 from typing import NamedTuple
 
 from ratd.base.errors import InputError
@@ -14,6 +18,7 @@ from ratd.base.errors import InputError
 __all__ = ["Measured", "fill", "slots"]
 
 _SLOT = re.compile(r"\{\{\s*([A-Za-z0-9_.-]+)\s*(?:([:=])([^}]*))?\}\}")
+_CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -48,12 +53,32 @@ def fill(template, values):
         One sentence: a slot that no value fits, a number that is not finite, or a verdict that is not the one in the
         template.
     """
-    return _SLOT.sub(lambda found: _filled(values, *found.groups()), template)
+    return _SLOT.sub(lambda found: _filled(values, *found.groups()), _kept(template, values))
+
+
+def _kept(template, values):
+    """The lines of a template that are to stand."""
+    names = {name.partition(".")[0] for name in values if "." in name}
+    inside, lines = [], []
+    for line in template.splitlines(keepends=True):
+        condition = _CONDITION.fullmatch(line.strip())
+        if condition is None:
+            lines += [line] if all(inside) else []
+        elif not condition[3]:
+            inside.append((condition[2] in names) is not bool(condition[1]))
+        elif inside:
+            inside.pop()
+        else:
+            raise InputError("the template has an 'end' without an 'if' before it")
+    if inside:
+        raise InputError("the template has an 'if' without an 'end' behind it")
+    return "".join(lines)
 
 
 def _filled(values, name, sign, form):
     if name not in values:
-        raise InputError(f"the slot {name} of the template has no value; allowed: {', '.join(sorted(values))}")
+        near = ", ".join(get_close_matches(name, values)) or f"{len(values)} others"
+        raise InputError(f"the slot {name} of the template has no value; there are {near}")
     value = values[name]
     if sign == "=":
         if value != form.strip():
@@ -76,6 +101,6 @@ def _filled(values, name, sign, form):
 
 
 def _number(value, form):
-    text = format(value, form).replace("-", "−")
+    text = format(value, form).replace("-", "−") if value else "0"
     mantissa, e, exponent = text.partition("e")
     return f"{mantissa}·10{str(int(exponent.replace('−', '-'))).translate(_RAISED)}" if e else text

@@ -46,7 +46,9 @@ def test_the_work_is_that_of_the_pressure(run):
 def test_energy_balances(run):
     high = run["phi"].values > 0.2
     assert np.abs(run["energy_residual"] / run["work"]).values[high].max() < 2e-3
-    gone = sum(run[f"dissipated_{way}"].values for way in ("damping", "sliding", "rolling", "twisting", "made", "broken"))
+    gone = sum(
+        run[f"dissipated_{way}"].values for way in ("damping", "sliding", "rolling", "twisting", "made", "broken")
+    )
     held = sum(run[f"stored_{mode}"].values for mode in ("normal", "sliding", "rolling", "twisting"))
     moving = run["kinetic_translation"].values + run["kinetic_spin"].values
     # with the first record in place of the start

@@ -68,6 +68,11 @@ def of_set(name, table):
         nominal = f"{float(f'{phi:.1g}'):g}"
         found[f"slope_{nominal}"] = slope_of_structure(table, k)
         found[f"far_slope_{nominal}"] = _far_slope(table, k)
+    for phi in AT:
+        found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
+        found[f"fitted_{phi:g}"] = float(
+            found["limit_c"].value * compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value) / phi**3
+        )
     found["phi_300"] = _measured(phi_at(table, 300.0))
     found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
     found["tatsuuma_300"] = _solved(300.0, found["P0"])
@@ -116,22 +121,21 @@ def of_tension(entries):
     """Strength over the formula of Tatsuuma et al. and the place of the peak, by way of pulling and phi."""
     strength, formula = in_units(entries)
     found = {}
-    rates = entries["strain_rate"].values
+    rates, phi = entries["strain_rate"].values, np.round(entries["phi"].values, 3)
     axes = np.where(entries["n_axes"].values == 1, "x", "xyz")
-    phi = np.round(entries["phi"].values, 3)
-    keys = [f"{a}_{p:g}_{r:.0e}" for a, p, r in zip(axes, phi, rates, strict=True)]
-    for key in dict.fromkeys(keys):
-        own = np.array(keys) == key
-        found[f"tension.{key}"] = Measured(*mean_of((strength / formula)[own]))
-        found[f"tension.peak_{key}"] = Measured(*mean_of((entries["phi_strength"] / entries["phi"]).values[own]))
-        found[f"tension.n_{key}"] = int(own.sum())
-    for a in ("x", "xyz"):
-        own = (axes == a) & (rates == rates.max())
-        if own.sum() > 2:
-            slope, at = np.polyfit(np.log(phi[own] / 0.1), np.log(strength[own]), 1)
-            found[f"tension.exponent_{a}"] = float(slope)
-            found[f"tension.at_0.1_{a}"] = float(np.exp(at))
-            found[f"tension.factor_{a}"] = float(np.exp(at) / 0.1**slope)
+    for way in np.unique(axes):
+        for rate in np.unique(rates[axes == way]):
+            own = (axes == way) & (rates == rate)
+            for each in np.unique(phi[own]):
+                here = own & (phi == each)
+                key = f"{each:g}_{rate:.0e}"
+                found[f"tension_{way}.{key}"] = Measured(*mean_of((strength / formula)[here]))
+                found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
+                found[f"tension_{way}.n_{key}"] = int(here.sum())
+            if len(np.unique(phi[own])) > 1:
+                slope, at = np.polyfit(np.log(phi[own]), np.log(strength[own]), 1)
+                found[f"tension_{way}.exponent_{rate:.0e}"] = float(slope)
+                found[f"tension_{way}.factor_{rate:.0e}"] = float(np.exp(at))
     return found
 
 
@@ -214,6 +218,9 @@ def findings(sets, entries, spun):
         values |= of_set(name, table)
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets["fiducial"], unequal)
+    if "xi_2" in sets and "xi_32" in sets:
+        values["xi_p48_8"] = 4.0 * values["fiducial.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
+        values["xi_p48_32"] = 16.0 * values["xi_32.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )

@@ -29,9 +29,7 @@ def tension(entries, spun=None):
     figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, "tensile strength")
     axes = figure.subplots()
     if spun is not None:
-        axes.plot(
-            spun["phi"], spun["strength"], ".", color="#BBBBBB", ms=2, label="grains spun up (inner cut)", zorder=0
-        )
+        axes.plot(spun["phi"], spun["strength"], ".", color="#BBBBBB", ms=2, label="grains spun up", zorder=0)
     how = np.stack([entries["n_axes"].values, entries["strain_rate"].values, entries["n_monomers"].values], axis=1)
     strength, _ = in_units(entries)
     for k, (n_axes, rate, n) in enumerate(np.unique(how, axis=0)[::-1]):
