@@ -15,6 +15,7 @@ FIGURES = (
     "high_density",
     "tension",
     "monomers",
+    "fewer_steps",
 )
 CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
 RUN = "<results>/compression/{set}/seed_{seed}.nc"
