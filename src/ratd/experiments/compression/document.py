@@ -110,13 +110,15 @@ def draw(name, plan, sets, entries, grains, data):
         path = data / "snapshots.nc"
         return module.figure3(io.read(path, "compression_snapshots")) if path.is_file() else None
     tables = [sets[wanted] for wanted in plan.sets_of(name) if wanted in sets]
+    if not tables:
+        return None
     if name == "monomers":
         equal, *others = tables
         return module.monomers(equal, others, [name_of(table) for table in others])
     if "set" in plan.config["figures"][name]:
         one = {"figure12": "figure4"}.get(name, name)
         drawn = getattr(import_module(f"ratd.experiments.compression.figures.{one}"), one)
-        return drawn(tables[0]) if tables else None
+        return drawn(tables[0])
     return getattr(module, name)(tables)
 
 
