@@ -32,7 +32,7 @@ def pair(a_i, a_j, material="q-S"):
 
 
 def parting_omega(a_i, a_j, material="q-S"):
-    """Where the centrifugal force is the pull-off force: m_red omega^2 (a_i + a_j) = 3 pi gamma R (force-controlled)."""
+    """Where the centrifugal force is the pull-off force: m_red omega^2 (a_i + a_j) = 3 pi gamma R."""
     material = MATERIALS[material]
     m_i, m_j = (4 / 3 * math.pi * a**3 * material.density for a in (a_i, a_j))
     pull = 3 * math.pi * material.surface_energy * a_i * a_j / (a_i + a_j)
