@@ -22,15 +22,19 @@ _HOME = {
     "FileError": "base.errors",
     "MATERIALS": "base.materials",
     "Material": "base.materials",
+    "compress": "experiments.compression.run",
+    "compressive_strength": "experiments.compression.strength",
     "cut_bound": "experiments.spin_up.cut_bound",
     "disruption": "experiments.spin_up.marks",
     "evolve": "experiments.evolve",
     "fit_ensemble": "experiments.spin_up.eq33",
     "grow": "aggregates.growth",
+    "grow_bcca": "aggregates.clusters",
     "mix": "base.materials",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
     "spin_up": "experiments.spin_up.run",
+    "stretch": "experiments.compression.stretch",
 }
 __all__ = sorted([*_HOME, "laws"])
 

@@ -1,4 +1,5 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
+import re
 import sys
 from pathlib import Path
 
@@ -52,5 +53,5 @@ def piece_settings(check):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml"):
+for path in ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml"):
     checked(read_yaml, path)
