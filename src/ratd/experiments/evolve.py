@@ -62,6 +62,7 @@ def evolve(
     drag=0.0,
     contacts=None,
     records=100,
+    snapshot_every=0,
     balance=0.05,
     checkpoint=None,
     progress=None,
@@ -98,6 +99,8 @@ def evolve(
         not given. In a periodic box with their images, three integers n: X_i - X_j + n L is the difference.
     records : int
         Number of records after the start, evenly spaced in time.
+    snapshot_every : int
+        At every so many records, and at the last one, positions and pieces are kept; 0 for none.
     balance : float or None
         The run ends with an error when the balance of energy is off by more than this part of the greatest of the
         kinetic energy at the start, what was dissipated, and the work of the box. None for no check. With a drag there
@@ -111,7 +114,7 @@ def evolve(
     -------
     xarray.Dataset
         Along ``record`` the time, energies, momenta, pieces (see `RECORDS`); along ``monomer``, in the order given, the
-        last positions (unwrapped), velocities, spins and pieces.
+        last positions (unwrapped), velocities, spins and pieces; along ``snapshot`` positions and pieces.
 
     Raises
     ------
@@ -133,39 +136,50 @@ def evolve(
         raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
     if not (_is_number(records) and records >= 1 and records == int(records)):
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
+    if not (_is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
+        raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
     contacts = None if contacts is None else _contacts(contacts, len(radius))
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
-    settings = (materials, law, box, drive, integrator, float(duration), int(records))
+    settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
     key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
-        state, rows = loaded[0], list(loaded[1]["rows"])
+        state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])
     else:
         if contacts is None:
             contacts = touching_pairs(position, radius, box)
         how = {"velocity": velocity, "spin": spin, "kind": kind}
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
+        pictures = [_picture(state)] if snapshot_every else []
     start = saved = told = clock.monotonic()
     begun = len(rows)
     while len(rows) <= records:
         state, _ = run(state, law, drive, box, integrator, until(time=duration * len(rows) / records))
         rows.append(_row(state, law, box, rows[0]))
+        if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or len(rows) > records):
+            pictures.append(_picture(state))
         if balance is not None and not drag:
             _check_balance(rows, balance)
         now = clock.monotonic()
         if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
-            checkpoints.save(checkpoint, key, state, rows=rows)
+            checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
             saved = now
         if progress is not None and now - told > PROGRESS_INTERVAL:
             to_go = (now - start) * (records + 1 - len(rows)) / (len(rows) - begun)
             progress((len(rows) - 1) / records, to_go, rows[-1])
             told = now
-    return _dataset(state, rows, law, box)
+    return _dataset(state, rows, pictures, law, box)
+
+
+def column(name):
+    """Where the numbers of one of `RECORDS` begin in a row."""
+    sizes = [int(np.prod([SIZES[dim] for dim in dims])) for dims, _, _ in RECORDS.values()]
+    return sum(sizes[: list(RECORDS).index(name)])
 
 
 def _arrays(position, radius, velocity, spin):
@@ -238,6 +252,16 @@ def _row(state, law, box, first):
     return [*map(float, row), float(total)]
 
 
+def _picture(state):
+    """Time, positions and pieces of all spheres in the order of the input, (n, 5)."""
+    back = np.argsort(state.identity)
+    table = np.empty((len(back), 5))
+    table[:, 0] = state.scalar[TIME]
+    table[:, 1:4] = monomer_rows(state)[back, X : X + 3]
+    table[:, 4] = pieces(state)[2][back]
+    return table
+
+
 def _check_balance(rows, share):
     first, last = rows[0], rows[-1]
     scale = max(first[1] + first[2], sum(last[7:13]), abs(last[13]))
@@ -250,7 +274,7 @@ def _check_balance(rows, share):
         )
 
 
-def _dataset(state, rows, law, box):
+def _dataset(state, rows, pictures, law, box):
     table = np.array(rows)
     variables = {}
     column = 0
@@ -270,6 +294,14 @@ def _dataset(state, rows, law, box):
     variables["radius"] = ("monomer", rows[:, RADIUS].copy(), {"units": "m", "long_name": "radius"})
     piece = pieces(state)[2][back]
     variables["piece"] = ("monomer", piece, {"units": "1", "long_name": "number of the piece at the end"})
+    if pictures:
+        table = np.array(pictures)
+        about = {"units": "s", "long_name": "time of the snapshot"}
+        variables["snapshot_time"] = ("snapshot", table[:, 0, 0].copy(), about)
+        about = {"units": "m", "long_name": "position at the snapshot"}
+        variables["snapshot_position"] = (("snapshot", "monomer", "axis"), table[:, :, 1:4].copy(), about)
+        about = {"units": "1", "long_name": "number of the piece at the snapshot"}
+        variables["snapshot_piece"] = (("snapshot", "monomer"), table[:, :, 4].astype("i8"), about)
     coordinates = {
         "storage": list(STORED),
         "way": list(DISSIPATED),
