@@ -2,6 +2,7 @@
 #
 #     snakemake --cores 2                                      the full paper
 #     snakemake --cores 2 --configfile config/quick.yaml       minutes
+#     snakemake --cores 2 collision                            collisions of clusters
 #
 # Settings of Snakemake itself are in profiles/default, which it finds by its name; keys of the config in
 # config/README.md.
@@ -12,6 +13,7 @@ include: "workflow/rules/common.smk"
 
 configfile: "config/config.yaml"
 configfile: "config/spin_up.yaml"
+configfile: "config/collision.yaml"
 
 
 pathvars:
@@ -21,6 +23,7 @@ pathvars:
 include: "workflow/rules/aggregates.smk"
 include: "workflow/rules/spin_up.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/collision.smk"
 include: "workflow/rules/validation.smk"
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from snakemake.utils import min_version
 
 from ratd.base.errors import InputError
+from ratd.experiments.collision.plan import check as collision_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
 from ratd.pipeline import jobs
 from ratd.pipeline.config import read_yaml
@@ -52,5 +53,5 @@ def piece_settings(check):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml"):
+for path in ("config/config.yaml", "config/spin_up.yaml", "config/collision.yaml"):
     checked(read_yaml, path)
