@@ -107,7 +107,7 @@ def _checked(radii, radius, second_contact, seed):
     largest, second = np.sort(radii)[::-1][:2]
     if largest + second > radius:
         raise InputError(
-            f"radius is {radius:g} m; the two largest spheres, {largest:g} m and {second:g} m, do not fit side by side: "
+            f"radius is {radius:g} m; the two largest spheres, of {largest:g} m and {second:g} m, do not fit in: "
             f"it must be at least {largest + second:g} m."
         )
     return radii

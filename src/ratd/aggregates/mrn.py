@@ -53,7 +53,9 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
     if not (np.isfinite([smallest, largest]).all() and 0.0 < smallest < largest):
-        raise InputError(f"smallest and largest are {smallest!r} and {largest!r}; they must be above 0, smallest first.")
+        raise InputError(
+            f"smallest and largest are {smallest!r} and {largest!r}; they must be above 0, smallest first."
+        )
     for name, value in (("mass_within", mass_within), ("length_within", length_within)):
         if value is not None and not value > 0.0:
             raise InputError(f"{name} is {value!r}; it must be a number above 0, or None.")
@@ -67,8 +69,8 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
         if length_within is None or abs(sample_length(radii, LENGTH_OF) / length - 1.0) <= length_within:
             return np.sort(radii)[::-1].copy()
     raise InputError(
-        f"None of {MOST_DRAWS} samples of {n} radii between {smallest:g} m and {largest:g} m is near enough to the law: "
-        f"mass_within is {mass_within}, length_within is {length_within}; take more spheres, or a greater number there."
+        f"None of {MOST_DRAWS} samples of {n} radii between {smallest:g} m and {largest:g} m is near enough to the "
+        f"law: mass_within is {mass_within}, length_within is {length_within}; take more spheres, or more there."
     )
 
 

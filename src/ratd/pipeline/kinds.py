@@ -38,6 +38,7 @@ HOMES = {
     **dict.fromkeys(
         ("collision_table", "collision_thresholds", "collision_clusters"), "ratd.experiments.collision.tables"
     ),
+    "collision_likeness": "ratd.experiments.collision.likeness",
     **{
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (

@@ -10,7 +10,24 @@ from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pipeline import config as configs
 
-__all__ = ["BUILT", "RELAXED", "RUNS", "Cell", "Plan", "check", "load"]
+__all__ = ["BUILT", "FIGURES", "RELAXED", "RUNS", "Cell", "Plan", "check", "load"]
+
+FIGURES = {
+    "figure1": ("figure1", "built"),
+    "figure2": ("figure2", "built"),
+    "figure3": ("snapshots", "pictures"),
+    "figure4": ("snapshots", "pictures"),
+    "figure5": ("figure5", "table"),
+    "figure6": ("figure6", "table"),
+    "figure7": ("figure7", "runs"),
+    "figure8": ("figure8", "table"),
+    "dissipation": ("dissipation", "table"),
+    "masses": ("masses", "runs"),
+    "scaling": ("scaling", "thresholds"),
+}
+"""Figure -> module that draws it, and what it is drawn from."""
+SPACING = {"figure3": 0.1e-6, "figure4": 0.15e-6}
+"""Time between two pictures [s], as printed."""
 
 BUILT = "<results>/collision/built/{material}/{cluster}.nc"
 RELAXED = "<results>/collision/relaxed/{law}/{cluster}.nc"
@@ -258,6 +275,60 @@ class Plan:
                 == (cell.law, cell.cluster, cell.sample, cell.velocity)
             ],
         }
+
+    def work(self, names):
+        """How long the collisions of a cell take, in some unit, for their order."""
+        (cell,) = [cell for cell in self.cells if cell.names == dict(names)]
+        own = self.config["clusters"][cell.cluster]
+        spheres = own["number"] if own["radii"] == "mrn" else (own["radius_nm"] / 1000.0) ** -3
+        return spheres * cell.duration / (cell.timestep or 1e-12)
+
+    @property
+    def analysis(self):
+        """Settings of the tables."""
+        return {"bootstrap": self.config["bootstrap"]}
+
+    @property
+    def pictures(self):
+        """Collisions whose snapshots figures 3 and 4 and the page show, list of dict."""
+        return self.config["snapshots"]["runs"][:2]
+
+    @property
+    def figures(self):
+        """Names of the figures to draw, list of str."""
+        return [name for name, (_, source) in FIGURES.items() if source != "pictures" or self._picture(name)]
+
+    def _picture(self, name):
+        """The collision that a figure or the page shows, None for none: the first, or the second for figure 4."""
+        shown = self.pictures
+        return shown[min(name == "figure4", len(shown) - 1)] if shown else None
+
+    @staticmethod
+    def figure_module(name):
+        """Module that draws a figure."""
+        return FIGURES[name][0]
+
+    def figure_input(self, name):
+        """Files that a figure, or the page, is drawn from, dict of name to list of str."""
+        source = "pictures" if name == "page" else FIGURES[name][1]
+        own = self.config["figures"]
+        if source == "built":
+            material = self.material_of(own["law"]).name
+            return {"built": [BUILT.format(material=material, cluster=own["mrn"])]}
+        if source == "pictures":
+            shown = self._picture(name)
+            return {"runs": [self.snapshot_file(shown)] if shown else []}
+        if source == "runs":
+            return {"runs": self.run_files(laws=[own["law"]], clusters=[own["mrn"], own["twin"]])}
+        return {source: f"<results>/collision/tables/collision_{source}.nc"}
+
+    def figure(self, name):
+        """Settings of a figure, or of the page."""
+        if name == "page" or name in SPACING:
+            shown = self._picture(name)
+            settings = {"rotation": shown["rotation"] if shown else None}
+            return settings | ({"spacing": SPACING[name]} if name in SPACING else {})
+        return dict(self.config["figures"])
 
     def snapshot_file(self, one):
         """File of a run with snapshots, named as in `snapshots.runs`."""

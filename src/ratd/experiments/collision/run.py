@@ -115,7 +115,7 @@ def collide(
         timestep = step_of(radius, material, law)
     elif not timestep <= (longest := longest_step(radius, material, law)):
         raise InputError(
-            f"timestep is {timestep:.3g} s; the smallest sphere, of {radius.min():.3g} m, allows at most {longest:.3g} s."
+            f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
         )
     if not relaxed:
         a, b = (at_rest(a, law), at_rest(b, law)) if b is not a else (at_rest(a, law),) * 2
@@ -164,7 +164,9 @@ def _check(a, b, velocity, impact_parameter, seed, gap):
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
     if not _is_number(gap) or not gap > 0.0:
-        raise InputError(f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start.")
+        raise InputError(
+            f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start."
+        )
 
 
 def _is_number(value):

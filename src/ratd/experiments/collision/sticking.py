@@ -84,7 +84,7 @@ def parting_velocity(velocity, a_i, a_j, material, damping_time):
 
 
 def sticking_velocity(a_i, a_j, material, damping_time):
-    """Greatest velocity [m/s] at which two spheres that meet head-on stick; inf where they always do, 0 without damping.
+    """Greatest velocity [m/s] at which two spheres that meet head-on stick; inf where always, 0 without damping.
 
     Notes
     -----
@@ -104,6 +104,4 @@ def sticking_velocity(a_i, a_j, material, damping_time):
     if apart[0] == 0:
         return 0.0
     low, high = grid[apart[0] - 1], grid[apart[0]]
-    return brentq(
-        lambda v: parting_velocity(v, a_i, a_j, material, damping_time) - 1e-6 * scale, low, high, rtol=1e-6
-    )
+    return brentq(lambda v: parting_velocity(v, a_i, a_j, material, damping_time) - 1e-6 * scale, low, high, rtol=1e-6)

@@ -7,6 +7,7 @@ import pandas as pd
 
 from ratd.experiments.collision.files import SERIES
 from ratd.experiments.collision.fragmentation import fragmentation_velocity
+from ratd.experiments.collision.likeness import likeness_table
 from ratd.experiments.collision.sticking import breaking_energy_of, sticking_velocity
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
@@ -213,6 +214,8 @@ def analyse(files, settings, say):
     table = collision_table(files["runs"])
     thresholds = threshold_table(table, lambda energy: replace(material, surface_energy=energy), settings["bootstrap"])
     clusters = cluster_table(files["clusters"])
+    likeness = likeness_table(table, min(settings["bootstrap"], 500))
     say(f"{len(table)} collisions, {int(thresholds['velocity'].notna().sum())} fragmentation velocities")
     tables = {"collision_table": table, "collision_thresholds": thresholds, "collision_clusters": clusters}
+    tables["collision_likeness"] = likeness
     return {name: as_dataset(one) for name, one in tables.items()} | {f"{n}_csv": one for n, one in tables.items()}
