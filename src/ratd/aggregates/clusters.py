@@ -58,7 +58,7 @@ def build_cluster(radii, radius, material="silica", *, second_contact=0.0, seed=
     -------
     ratd.Grain
         Of the type "cluster"; spheres in the order in which they were placed, the largest first, and the centre of
-        mass in the origin. Contacts made here are at rest by the law of DMT.
+        mass in the origin. All contacts are at rest by the law of DMT, so that the cluster is.
 
     Raises
     ------
@@ -156,12 +156,14 @@ def _place(radius, outer, surface_energy, reduced_modulus, rolls, rng):
         for attempt in range(MOST_TRIES):
             j = np.int64(rng.random() * k)
             s = resting_distance(a, radius[j], surface_energy, reduced_modulus)
+            second = -1
             x, y, z = random_direction(rng)
             if rolls[k] and k > 1 and attempt < TRIES_TO_ROLL:
                 ux, uy, uz = random_normal(x, y, z, rng)
-                angle = _second_touch((x, y, z), (ux, uy, uz), s, a, j, k, position, radius, surface_energy,
-                                      reduced_modulus)  # fmt: skip
-                if angle == math.inf:
+                angle, second = _second_touch(
+                    (x, y, z), (ux, uy, uz), s, a, j, k, position, radius, surface_energy, reduced_modulus
+                )
+                if second < 0:
                     continue
                 c, t = math.cos(angle), math.sin(angle)
                 x, y, z = c * x + t * ux, c * y + t * uy, c * z + t * uz
@@ -169,7 +171,7 @@ def _place(radius, outer, surface_energy, reduced_modulus, rolls, rng):
             place[1] = position[j, 1] + s * y
             place[2] = position[j, 2] + s * z
             inside = math.sqrt(place[0] ** 2 + place[1] ** 2 + place[2] ** 2) + a <= outer
-            if inside and _is_free(place, a, k, position, radius, surface_energy, reduced_modulus):
+            if inside and _is_free(place, a, (j, second), k, position, radius):
                 found = True
                 break
         if not found:
@@ -181,7 +183,7 @@ def _place(radius, outer, surface_energy, reduced_modulus, rolls, rng):
 
 @jit
 def _second_touch(e, f, s, a, j, count, position, radius, surface_energy, reduced_modulus):
-    """Angle [rad] by which a sphere rolls over sphere j, from e towards f, until it touches another; inf for none.
+    """How far a sphere rolls over sphere j, from e towards f, until it touches another.
 
     Parameters
     ----------
@@ -193,8 +195,16 @@ def _second_touch(e, f, s, a, j, count, position, radius, surface_energy, reduce
         Radius of the sphere [m].
     j, count : int
         The partner, and how many spheres there are.
+
+    Returns
+    -------
+    angle : float
+        [rad]; inf where it touches none.
+    second : int
+        The one that it touches; -1 for none.
     """
     least = math.inf
+    second = -1
     for k in range(count):
         if k == j:
             continue
@@ -207,21 +217,21 @@ def _second_touch(e, f, s, a, j, count, position, radius, surface_energy, reduce
             continue
         reach = resting_distance(a, radius[k], surface_energy, reduced_modulus)
         level = (s * s + square - reach * reach) / (2.0 * s)
-        least = min(least, _turn(x * e[0] + y * e[1] + z * e[2], x * f[0] + y * f[1] + z * f[2], level))
-    return least
+        angle = _turn(x * e[0] + y * e[1] + z * e[2], x * f[0] + y * f[1] + z * f[2], level)
+        if angle < least:
+            least, second = angle, k
+    return least, second
 
 
 @jit
-def _is_free(place, a, count, position, radius, surface_energy, reduced_modulus):
-    """Whether a sphere at a place is nowhere nearer to another than at rest."""
+def _is_free(place, a, partners, count, position, radius):
+    """Whether a sphere at a place overlaps none but its partners, two of which may be the same or -1."""
     for k in range(count):
+        if k == partners[0] or k == partners[1]:
+            continue
         x = position[k, 0] - place[0]
         y = position[k, 1] - place[1]
         z = position[k, 2] - place[2]
-        square = x * x + y * y + z * z
-        if square >= (a + radius[k]) ** 2:
-            continue
-        reach = resting_distance(a, radius[k], surface_energy, reduced_modulus)
-        if square < reach * reach * (1.0 - 1e-12):
+        if x * x + y * y + z * z < (a + radius[k]) ** 2:
             return False
     return True

@@ -132,43 +132,52 @@ class Plan:
     def __init__(self, config, materials, results):
         self.config, self.materials = config, materials
         self.results = results.rstrip("/") or "/"
-        self.entries = self._entries()
-        self.cells = [cell for entry in self.entries for cell in entry]
+        self.entries = [self._cells(entry) for entry in self.config["runs"]]
+        self.cells = self._joined()
 
-    def _entries(self):
-        """Cells of each entry of `runs`, list of list of Cell; a cell that an earlier entry has is left out."""
-        cells, entries = {}, []
-        for k, entry in enumerate(self.config["runs"]):
-            first = entry["rotations"]["first"]
-            timestep = entry["timestep_ps"]
-            rest = {
-                "rotations": tuple(range(first, first + entry["rotations"]["number"])),
-                "timestep": None if timestep is None else timestep * 1e-12,
-                "duration": entry["duration_us"] * 1e-6,
-            }
-            entries.append([])
-            for law in entry["laws"]:
-                for cluster in entry["clusters"]:
-                    for sample in range(1, entry["samples"] + 1):
-                        for velocity in entry["velocities"]:
-                            cell = Cell(law, cluster, sample, velocity, entry["impact_parameter"], **rest)
-                            key = tuple(cell.names.values())
-                            if key in cells and cells[key] != cell:
-                                raise InputError(
-                                    f"{_WHERE}.runs[{k}] has the collisions of {cluster} at {velocity:g} m/s, law "
-                                    f"{law}, sample {sample}, that an earlier entry has with other rotations, step or "
-                                    "duration; allowed: each of them once"
-                                )
-                            if key not in cells:
-                                cells[key] = cell
-                                entries[-1].append(cell)
-        return entries
+    def _cells(self, entry):
+        """Cells of an entry of `runs`, list of Cell."""
+        first = entry["rotations"]["first"]
+        timestep = entry["timestep_ps"]
+        rest = {
+            "rotations": tuple(range(first, first + entry["rotations"]["number"])),
+            "timestep": None if timestep is None else timestep * 1e-12,
+            "duration": entry["duration_us"] * 1e-6,
+        }
+        return [
+            Cell(law, cluster, sample, velocity, entry["impact_parameter"], **rest)
+            for law in entry["laws"]
+            for cluster in entry["clusters"]
+            for sample in range(1, entry["samples"] + 1)
+            for velocity in entry["velocities"]
+        ]
+
+    def _joined(self):
+        """All cells in the order of the config; one that several entries have, with the rotations of all of them."""
+        cells = {}
+        for k, entry in enumerate(self.entries):
+            for cell in entry:
+                known = cells.setdefault(tuple(cell.names.values()), cell)
+                if (known.timestep, known.duration) != (cell.timestep, cell.duration):
+                    raise InputError(
+                        f"{_WHERE}.runs[{k}] has {cell.cluster} at {cell.velocity:g} m/s, law {cell.law}, sample "
+                        f"{cell.sample}, that an earlier entry has with another timestep_ps or duration_us; allowed: "
+                        "the same for all rotations"
+                    )
+                rotations = tuple(sorted({*known.rotations, *cell.rotations}))
+                cells[tuple(cell.names.values())] = replace(known, rotations=rotations)
+        return list(cells.values())
 
     def queue(self):
         """All (cell, rotation), entry by entry; in an entry one rotation of all cells comes before the next."""
+        seen = set()
         for cells in self.entries:
-            for turn in range(max((len(cell.rotations) for cell in cells), default=0)):
-                yield from ((cell, cell.rotations[turn]) for cell in cells)
+            for turn in range(max(len(cell.rotations) for cell in cells)):
+                for cell in cells:
+                    key = (*cell.names.values(), cell.rotations[turn])
+                    if key not in seen:
+                        seen.add(key)
+                        yield cell, cell.rotations[turn]
 
     def pattern(self, name):
         """Regular expression of what a wildcard of Snakemake can be."""

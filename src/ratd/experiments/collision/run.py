@@ -15,6 +15,9 @@ __all__ = ["DURATION", "GAP", "at_rest", "collide", "impact_energy"]
 
 GAP = 20e-9
 """Least distance of the two clusters at the start [m]."""
+RELAXATION_STEP = 1 / 32
+"""Step of the relaxation over the shortest time of a contact. With 1/8 the friction that grows with the rate, which is
+explicit, feeds spheres of several contacts."""
 DURATION = 3e-6
 """How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
 
@@ -38,7 +41,7 @@ def at_rest(grain, law="dmt"):
     ratd.Grain
         Spheres in the same order, see `ratd.experiments.relax.relax`.
     """
-    state = relax(grain, law=law_of(law))
+    state = relax(grain, law=law_of(law), timestep_factor=RELAXATION_STEP)
     position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
     return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
 
