@@ -5,7 +5,7 @@ import numpy as np
 from ratd.aggregates.radii import mrn_moment, mrn_radii
 from ratd.base.errors import InputError
 
-__all__ = ["LARGEST", "SMALLEST", "mrn", "mrn_length", "moment_of_length", "sample_length"]
+__all__ = ["LARGEST", "SMALLEST", "mrn", "mrn_length", "moment_of_length", "part_above", "sample_length"]
 
 SMALLEST, LARGEST = 50e-9, 2.5e-6
 """Ends of the distribution [m] (Umstaetter & Urbassek 2020, Sect. 2.2)."""
@@ -87,6 +87,12 @@ def sample_length(radii, q):
     radii = np.asarray(radii, dtype=float)
     scale = radii.max()
     return float(scale * np.mean((radii / scale) ** q) ** (1.0 / q))
+
+
+def part_above(radius, smallest=SMALLEST, largest=LARGEST):
+    """Part of the spheres of the law that are larger than a radius [m]."""
+    end = (largest / smallest) ** -2.5
+    return ((radius / smallest) ** -2.5 - end) / (1.0 - end)
 
 
 def moment_of_length(length, smallest=SMALLEST, largest=LARGEST):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.aggregates.mrn import LARGEST, SMALLEST
+from ratd.aggregates.mrn import LARGEST, SMALLEST, part_above
 from ratd.experiments.collision.figures.look import radius_label
 from ratd.pictures.style import ONE_COLUMN, new_figure, styled
 from ratd.pipeline import io
@@ -38,7 +38,9 @@ def figure1(samples):
     middle = np.sqrt(edges[1:] * edges[:-1])
     for k, radii in enumerate(samples):
         counts = np.histogram(radii, edges)[0]
-        part = counts / len(radii) / np.diff(edges) * 1e-6
+        # of a sample whose smallest spheres were left out the others keep their density
+        number = len(radii) / part_above(radii.min())
+        part = counts / number / np.diff(edges) * 1e-6
         there = counts > 0
         colour = ("#D55E00", "#009E73", "#0072B2", "#CC79A7")[k % 4]
         label = f"sample {k + 1}, largest {radius_label(radii.max())}"

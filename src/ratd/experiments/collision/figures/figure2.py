@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.aggregates.mrn import moment_of_length, mrn_length, sample_length
+from ratd.aggregates.mrn import moment_of_length, mrn_length, part_above, sample_length
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY, ONE_COLUMN, new_figure, styled
 from ratd.pipeline import io
@@ -28,7 +28,9 @@ def figure2(samples):
     axes = figure.subplots()
     q = np.linspace(1.0, HIGHEST, 141)
     for k, radii in enumerate(samples):
-        own = [sample_length(radii, one) * 1e6 for one in q]
+        # of a sample whose smallest spheres were left out: they count in the mean, and add nothing to it
+        whole = part_above(radii.min())
+        own = [sample_length(radii, one) * whole ** (1.0 / one) * 1e6 for one in q]
         axes.plot(q, own, color=GREY, lw=0.8, label="samples" if k == 0 else None)
     axes.plot(q, [mrn_length(one) * 1e6 for one in q], color="black", label="law")
     moments = [moment_of_length(radius) for radius in RADII]

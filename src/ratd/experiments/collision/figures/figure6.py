@@ -34,7 +34,7 @@ def figure6(table, law, mrn):
     Returns
     -------
     matplotlib.figure.Figure
-        The band is what N_s cannot exceed as long as the largest spheres are whole: one less their part of the mass.
+        The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
     own, equal = table[table["cluster"] == mrn], table[is_equal(table)]
@@ -55,8 +55,9 @@ def figure6(table, law, mrn):
         axes.set_ylim(-0.03, 1.03)
     sticking_line(left, STICKING)
     shares = own.groupby("sample")["largest_share"].first()
-    right.axhspan(1 - shares.max(), 1 - shares.min() + 1e-3, color=HIGHLIGHT, alpha=0.35, lw=0, zorder=0)
-    right.text(0.3, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
+    for share in shares:
+        right.axhline(1 - share, color=HIGHLIGHT, lw=1.2, zorder=0)
+    right.text(0.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
     left.set_ylabel("agglomeration $X$")
     right.set_ylabel("fragmentation $N_\\mathrm{s}$")
     left.legend(loc="upper right")

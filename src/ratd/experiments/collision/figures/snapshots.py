@@ -73,6 +73,9 @@ def picture(row, spacing):
     bar = ScalarMappable(LogNorm(scale.vmin * 1e6, scale.vmax * 1e6), SIZES)
     bar = figure.colorbar(bar, ax=panels, location="right", shrink=0.8, aspect=30, pad=0.01)
     bar.set_label("radius of the sphere [µm]")
+    ticks = [tick for tick in (0.05, 0.1, 0.2, 0.5, 1.0, 2.0) if scale.vmin * 1e6 <= tick <= scale.vmax * 1e6]
+    bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks], minor=False)
+    bar.minorticks_off()
     return figure
 
 
