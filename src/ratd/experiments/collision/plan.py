@@ -107,11 +107,12 @@ def check(config, schemas="config/schema"):
                     raise InputError(
                         f"{_WHERE}.runs[{k}].{key} has {name!r}; allowed: {', '.join(own[key])}, the keys of {key}"
                     )
-    for name, law in own["laws"].items():
-        if law.get("material", own["material"]) not in materials:
-            raise InputError(f"{_WHERE}.laws.{name}.material is {law['material']!r}; allowed: {', '.join(materials)}")
-    if own["material"] not in materials:
-        raise InputError(f"{_WHERE}.material is {own['material']!r}; allowed: {', '.join(materials)}")
+    named = {"material": own["material"]} | {
+        f"laws.{name}.material": law["material"] for name, law in own["laws"].items() if "material" in law
+    }
+    for key, name in named.items():
+        if name not in materials:
+            raise InputError(f"{_WHERE}.{key} is {name!r}; allowed: {', '.join(materials)}")
     plan = Plan(own, materials, shared["results"])
     plan.check_figures()
     return plan
