@@ -6,7 +6,7 @@ from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.laws import balance_of, contacts_of, law_of, longest_step, step_of
-from ratd.experiments.evolve import column, evolve
+from ratd.experiments.evolve import columns, evolve
 from ratd.experiments.relax import relax
 from ratd.engine.layout import X
 from ratd.engine.state import monomer_rows
@@ -125,10 +125,11 @@ def collide(
     position, velocities = approach(a, b, velocity, impact_parameter, gap, seed)
     contacts = np.concatenate([contacts_of(a, law), contacts_of(b, law) + len(a.radius)])
     energy = impact_energy(a.mass.sum(), b.mass.sum(), velocity)
-    pieces_at, moving_at = column("n_pieces"), column("kinetic_translation")
 
     def tell(part, to_go, row):
-        progress(row[0], int(row[pieces_at]), (row[moving_at] + row[moving_at + 1]) / energy, to_go)
+        now = columns(np.array([row]))
+        moving = float(now["kinetic_translation"][0] + now["kinetic_spin"][0])
+        progress(float(now["time"][0]), int(now["n_pieces"][0]), moving / energy, to_go)
 
     run = evolve(
         position, radius, velocities, material=material, law=law, duration=duration, timestep=float(timestep),

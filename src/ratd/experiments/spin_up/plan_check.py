@@ -66,11 +66,16 @@ def _check_paces(plan):
     for drive in plan.config["drives"]:
         where = "run and literal together" if drive == "literal" else "run"
         for kind in plan.config["types"]:
-            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("epsilon", "angular_acceleration")}
+            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("unrest", "epsilon", "angular_acceleration")}
+            if drive == "literal" and laws["unrest"] is not None or drive == "torque" and laws["unrest"] is None:
+                raise InputError(
+                    f"{_WHERE}: {where} give {laws} for the drive {drive}; allowed: "
+                    + ("null for unrest, since it does not wait" if drive == "literal" else "a number for unrest")
+                )
             if sum(value is not None for value in laws.values()) != 1:
                 raise InputError(
                     f"{_WHERE}: {where} give {laws} for {kind}; "
-                    "allowed: a number for one of them and null for the other"
+                    "allowed: a number for one of them and null for the others"
                 )
 
 
