@@ -6,17 +6,29 @@ import numpy as np
 import pandas as pd
 
 from ratd.experiments.collision.files import SERIES
-from ratd.experiments.collision.fragmentation import fragmentation_velocity
+from ratd.experiments.collision.fragmentation import agglomeration, fragmentation_number, fragmentation_velocity
 from ratd.experiments.collision.likeness import likeness_table
 from ratd.experiments.collision.sticking import breaking_energy_of, sticking_velocity
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
-__all__ = ["HALF", "analyse", "cluster_table", "collision_table", "mean_energy", "series_of", "threshold_table"]
+__all__ = [
+    "EARLY",
+    "HALF",
+    "analyse",
+    "cluster_table",
+    "collision_table",
+    "findings",
+    "mean_energy",
+    "series_of",
+    "threshold_table",
+]
 
 HALF = 0.5e-6
 """Time [s] at which the energy left is looked at (Fig. 8)."""
+EARLY = 0.6e-6
+"""Time [s] at which X and N_s are looked at too: long after the passage of the clusters, and too early all the same."""
 REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
 
 COLUMNS = {
@@ -39,6 +51,8 @@ COLUMNS = {
     "duration": ("s", "duration"),
     "X": ("1", "X at the end"),
     "N_s": ("1", "N_s at the end"),
+    "X_early": ("1", "X at 0.6 us"),
+    "N_s_early": ("1", "N_s at 0.6 us"),
     "X_rest": ("1", "X of the mass without the largest sphere of each cluster"),
     "N_s_rest": ("1", "N_s of the mass without the largest sphere of each cluster"),
     "n_pieces": ("1", "number of pieces, single spheres included"),
@@ -117,11 +131,19 @@ def collision_table(paths):
             "single_share": row["single_mass"].item() / row["mass"].item(),
             "energy_half": np.interp(HALF, time, moving) / energy if time[-1] >= HALF else np.nan,
             "energy_end": moving[-1] / energy,
+            **{name: np.interp(EARLY, time, part) if time[-1] >= EARLY else np.nan for name, part in early_values(row)},
             "potential_share": np.max(np.abs(row["stored"].values[early]) / moving[early]),
             **{f"by_{way}": row[f"dissipated_{way}"].values[-1] / energy for way in _WAYS},
         }
         table.append(values)
     return pd.DataFrame(table, columns=list(COLUMNS))
+
+
+def early_values(row):
+    """X and N_s against time of one collision."""
+    first, second, whole = row["mass_1"].values, row["mass_2"].values, row["mass"].item()
+    yield "X_early", agglomeration(first, second, whole)
+    yield "N_s_early", fragmentation_number(first, second, whole)
 
 
 _WAYS = ("damping", "sliding", "rolling", "twisting")
@@ -208,14 +230,22 @@ def cluster_table(paths):
     return pd.DataFrame(found, columns=list(CLUSTERS))
 
 
-def analyse(files, settings, say):
-    """Tables of a job of the pipeline: collisions, thresholds, clusters, each as netCDF and CSV."""
+def findings(files, settings, say):
+    """Tables of a job of the pipeline that follow from collisions alone: collisions, thresholds, likeness."""
     material = material_of(io.read(files["runs"][0], "collisions"))
     table = collision_table(files["runs"])
     thresholds = threshold_table(table, lambda energy: replace(material, surface_energy=energy), settings["bootstrap"])
-    clusters = cluster_table(files["clusters"])
-    likeness = likeness_table(table, min(settings["bootstrap"], 500))
     say(f"{len(table)} collisions, {int(thresholds['velocity'].notna().sum())} fragmentation velocities")
-    tables = {"collision_table": table, "collision_thresholds": thresholds, "collision_clusters": clusters}
-    tables["collision_likeness"] = likeness
+    tables = {"collision_table": table, "collision_thresholds": thresholds}
+    tables["collision_likeness"] = likeness_table(table, min(settings["bootstrap"], 500))
+    return _both(tables)
+
+
+def analyse(files, settings, say):
+    """All tables of a job of the pipeline, each as netCDF and CSV."""
+    return findings(files, settings, say) | _both({"collision_clusters": cluster_table(files["clusters"])})
+
+
+def _both(tables):
+    """Tables as datasets and, under another name, as they are."""
     return {name: as_dataset(one) for name, one in tables.items()} | {f"{n}_csv": one for n, one in tables.items()}
