@@ -24,6 +24,7 @@ include: "workflow/rules/aggregates.smk"
 include: "workflow/rules/spin_up.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/collision.smk"
+include: "workflow/rules/collision_document.smk"
 include: "workflow/rules/validation.smk"
 
 

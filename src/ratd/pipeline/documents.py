@@ -1,6 +1,7 @@
 """Documents: a text that people write, with slots for numbers that are filled from data.
 
-A slot is ``{{name}}``. Every slot must have a value; no sentence is made by a program.
+A slot is ``{{name}}``, or ``{{name | words}}`` with the words that stand there as long as there is no value. Every
+other slot must have one. No sentence is made by a program.
 """
 
 import re
@@ -9,12 +10,12 @@ from ratd.base.errors import InputError
 
 __all__ = ["fill", "slots"]
 
-_SLOT = re.compile(r"\{\{\s*(.+?)\s*\}\}")
+_SLOT = re.compile(r"\{\{\s*([^|}]+?)\s*(?:\|\s*([^}]*?)\s*)?\}\}")
 
 
 def slots(template):
     """Names of the slots of a template, in their order, each once."""
-    return list(dict.fromkeys(_SLOT.findall(template)))
+    return list(dict.fromkeys(name for name, _ in _SLOT.findall(template)))
 
 
 def fill(template, values, where="template"):
@@ -35,9 +36,9 @@ def fill(template, values, where="template"):
     Raises
     ------
     InputError
-        If a slot has no value: one sentence that names it.
+        If a slot has neither a value nor words of its own: one sentence that names it.
     """
-    missing = [name for name in slots(template) if name not in values]
+    missing = [name for name, words in _SLOT.findall(template) if name not in values and not words]
     if missing:
         raise InputError(f"{where}: the slot {missing[0]!r} has no value; {len(missing)} slots have none")
-    return _SLOT.sub(lambda match: values[match.group(1)], template)
+    return _SLOT.sub(lambda match: values.get(match.group(1), match.group(2)), template)

@@ -50,13 +50,14 @@ def test_velocity_of_a_known_fall():
     expected = 10 * 0.05 / np.sqrt(40) * np.hypot(0.75, 0.25)
     assert 0.5 * expected < found["error"] < 2 * expected and found["found"] == 1.0
     assert found["low"] < found["velocity"] < found["high"]
+    assert (found["below"], found["above"]) == (8, 10)
 
 
 def test_the_last_fall_counts_and_none_gives_nan():
     steps = {1: 0.9, 2: 0.1, 3: 0.6, 4: 0.0}
     assert fragmentation_velocity(table(steps, steps.get, scatter=0.0))["velocity"] == pytest.approx(3.75)
     none = fragmentation_velocity(table([1, 2], lambda v: 0.9, scatter=0.0))
-    assert np.isnan(none["velocity"]) and np.isnan(none["error"]) and none["found"] == 0.0
+    assert np.isnan(none["velocity"]) and np.isnan(none["error"]) and np.isnan(none["below"]) and none["found"] == 0.0
 
 
 @pytest.mark.parametrize(

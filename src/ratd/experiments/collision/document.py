@@ -21,6 +21,10 @@ COLUMNS = (
 )  # fmt: skip
 
 
+WIDEST = 0.35
+"""A fragmentation velocity is told where the velocities on both sides are no farther apart than this part of it."""
+
+
 def with_error(mean, error, digits=None):
     """Such as "0.16 ± 0.03", as many decimals as make two digits of the error; the value alone without an error."""
     if not np.isfinite(mean):
@@ -72,9 +76,9 @@ def values(table, thresholds, likeness):
         found[f"v_frag {key}"] = _threshold(row)
         found[f"collisions {key}"] = f"{row['collisions']:.0f}"
         found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
-        found[f"ratio {key}"] = with_error(
-            row["velocity"] / row["sticking_velocity"], row["error"] / row["sticking_velocity"]
-        )
+        stick = row["sticking_velocity"]
+        close = row["above"] - row["below"] <= WIDEST * row["velocity"]
+        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 0) if close else "–"
         found[f"energy {key}"] = with_error(row["energy_per_contact"], np.nan, 0)
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
@@ -93,6 +97,9 @@ def values(table, thresholds, likeness):
 def _threshold(row):
     """Text of a fragmentation velocity; where X stays on one side of the limit, on which."""
     if np.isfinite(row["velocity"]):
+        # what lies between two velocities far apart is not known by a straight line between them
+        if row["above"] - row["below"] > WIDEST * row["velocity"]:
+            return f"between {row['below']:g} and {row['above']:g}"
         return with_error(row["velocity"], row["error"], 1)
     return f"not between {row['slowest']:g} and {row['fastest']:g}"
 

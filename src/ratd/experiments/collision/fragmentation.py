@@ -82,7 +82,8 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     -------
     pandas.Series
         velocity [m/s], error (standard deviation of the bootstrap), low, high (its 16 and 84 %), found (part of its
-        samples with a threshold). NaN where X stays on one side.
+        samples with a threshold), below, above (the velocities that were tried on both sides of it). NaN where X stays
+        on one side.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
             raise InputError(f"The table has no column {column!r}; it must have velocity and X.")
     if not len(table):
         raise InputError("The table has no collisions; it must have at least one row.")
-    velocities = np.sort(table["velocity"].unique())
+    velocities = np.sort(table["velocity"].unique().astype(float))
     groups = [table["X"].to_numpy(float)[table["velocity"].to_numpy() == v] for v in velocities]
     middle = _crossing(velocities, np.array([group.mean() for group in groups]), limit)
     rng = np.random.Generator(np.random.PCG64(seed))
@@ -108,8 +109,11 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     there = np.isfinite(drawn)
     spread = drawn[there] if there.sum() > 1 else np.full(2, np.nan)
     low, high = np.quantile(spread, [0.16, 0.84])
+    below = velocities[velocities <= middle].max(initial=-np.inf)
+    above = velocities[velocities > middle].min(initial=np.inf)
+    ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
     values = {"velocity": middle, "error": np.std(spread, ddof=1), "low": low, "high": high, "found": there.mean()}
-    return pd.Series(values)
+    return pd.Series(values | ends)
 
 
 def _crossing(velocity, mean, limit):

@@ -27,6 +27,8 @@ __all__ = ["CONFIG", "DATA", "Table", "main", "work"]
 
 CONFIG = ("config/config.yaml", "config/collision.yaml", "config/collision_study.yaml")
 DATA = "docs/collision/data"
+PICTURES = "pictures"
+"""Folder in it of the collisions with snapshots."""
 _KEY = ("sample", "velocity", "impact_parameter", "seed")
 
 

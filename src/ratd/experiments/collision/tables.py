@@ -83,6 +83,8 @@ THRESHOLDS = {
     "low": ("m s-1", "16 % of the bootstrap"),
     "high": ("m s-1", "84 % of the bootstrap"),
     "found": ("1", "part of the bootstrap that has a threshold"),
+    "below": ("m s-1", "velocity next below it that was tried"),
+    "above": ("m s-1", "velocity next above it that was tried"),
     "slowest": ("m s-1", "least velocity that was tried"),
     "fastest": ("m s-1", "greatest velocity that was tried"),
     "collisions": ("1", "number of collisions"),
