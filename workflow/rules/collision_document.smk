@@ -1,46 +1,15 @@
-# The document, from the collisions that are committed with it: seconds, and no collision is computed.
-STUDIED = sorted(map(str, Path("docs/collision/data").glob("*/*.nc")))
-STUDY_RUNS = [path for path in STUDIED if "/pictures/" not in path]
-STUDY_TABLES = "results/collision_study/{name}.nc"
-STUDY_SETTINGS = {"law": "velocity", "mrn": "mrn100", "twin": "314nm"}
-STUDY_FIGURES = {
-    "figure3": ("snapshots", "figure3", {"rotation": 0, "spacing": 1.0e-7}),
-    "figure4": ("snapshots", "figure4", {"rotation": 0, "spacing": 1.5e-7}),
-    "figure5": ("figure5", "table", STUDY_SETTINGS),
-    "figure6": ("figure6", "table", STUDY_SETTINGS),
-    "figure7": ("figure7", "runs", STUDY_SETTINGS),
-    "figure8": ("figure8", "table", STUDY_SETTINGS),
-    "dissipation": ("dissipation", "table", STUDY_SETTINGS),
-    "masses": ("masses", "runs", STUDY_SETTINGS),
-    "scaling": ("scaling", "thresholds", {}),
-    "question": ("question", "table", {"velocities": [15.0, 30.0]}),
-}
-STUDY_SAMPLES = ("figure1", "figure2")
+# docs/collision.md from the collisions that are committed with it: seconds, and no collision is computed.
+from ratd.experiments.collision import document_plan as page
 
-
-def study_input(source):
-    """Files that a figure of the document is drawn from."""
-    if source in ("figure3", "figure4"):
-        return {"runs": [f"docs/collision/data/pictures/{source}.nc"]}
-    if source == "runs":
-        return {"runs": STUDY_RUNS}
-    return {source: STUDY_TABLES.format(name=f"collision_{source}")}
+PAGE_TABLES = [name for name in COLLISION_TABLES if name != "collision_clusters"]
 
 
 rule study_tables:
     input:
-        runs=STUDY_RUNS,
+        runs=page.run_files(),
     output:
-        **{
-            name: STUDY_TABLES.format(name=name)
-            for name in COLLISION_TABLES
-            if name != "collision_clusters"
-        },
-        **{
-            f"{name}_csv": f"results/collision_study/{name}.csv"
-            for name in COLLISION_TABLES
-            if name != "collision_clusters"
-        },
+        **{name: page.TABLES.format(name=name) for name in PAGE_TABLES},
+        **{f"{name}_csv": f"results/collision_study/{name}.csv" for name in PAGE_TABLES},
     log:
         "results/collision_study/logs/tables.log",
     benchmark:
@@ -48,11 +17,7 @@ rule study_tables:
     conda:
         "../envs/ratd.yaml"
     params:
-        task=task(
-            "analyse",
-            "ratd.experiments.collision.tables:findings",
-            *(name for name in COLLISION_TABLES if name != "collision_clusters"),
-        ),
+        task=task("analyse", "ratd.experiments.collision.tables:findings", *PAGE_TABLES),
         settings={"bootstrap": 2000},
     message:
         "Tabulate the collisions of the document"
@@ -62,7 +27,7 @@ rule study_tables:
 
 rule study_samples:
     output:
-        "results/collision_study/samples.nc",
+        page.SAMPLES,
     log:
         "results/collision_study/logs/samples.log",
     benchmark:
@@ -79,19 +44,13 @@ rule study_samples:
         "../scripts/run.py"
 
 
-for name in (*STUDY_FIGURES, *STUDY_SAMPLES):
-    drawn_by, source, settings = STUDY_FIGURES.get(name, (name, "built", {}))
-    files = (
-        {"built": ["results/collision_study/samples.nc"]}
-        if source == "built"
-        else study_input(source)
-    )
+for name in page.FIGURES:
 
     rule:
         name:
             f"study_{name}"
         input:
-            **files,
+            **page.figure_input(name),
         output:
             png=f"docs/collision/{name}.png",
         log:
@@ -101,8 +60,11 @@ for name in (*STUDY_FIGURES, *STUDY_SAMPLES):
         conda:
             "../envs/ratd.yaml"
         params:
-            task=task("figure", f"ratd.experiments.collision.figures.{drawn_by}:draw"),
-            settings=settings,
+            task=task(
+                "figure",
+                f"ratd.experiments.collision.figures.{page.figure_module(name)}:draw",
+            ),
+            settings=page.figure_settings(name),
         message:
             f"Draw {name} of the document on collisions"
         script:
@@ -111,10 +73,10 @@ for name in (*STUDY_FIGURES, *STUDY_SAMPLES):
 
 rule collision_document:
     input:
-        [f"docs/collision/{name}.png" for name in (*STUDY_FIGURES, *STUDY_SAMPLES)],
-        table=STUDY_TABLES.format(name="collision_table"),
-        thresholds=STUDY_TABLES.format(name="collision_thresholds"),
-        likeness=STUDY_TABLES.format(name="collision_likeness"),
+        [f"docs/collision/{name}.png" for name in page.FIGURES],
+        table=page.TABLES.format(name="collision_table"),
+        thresholds=page.TABLES.format(name="collision_thresholds"),
+        likeness=page.TABLES.format(name="collision_likeness"),
         template="docs/collision/template.md",
     output:
         document="docs/collision.md",

@@ -4,6 +4,7 @@ Motion of the overlap delta from first touch, by the normal force of the law of 
 """
 
 import math
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -83,6 +84,7 @@ def parting_velocity(velocity, a_i, a_j, material, damping_time):
     return float(-found.y_events[0][0][1] * overlap / unit) if len(found.t_events[0]) else 0.0
 
 
+@cache
 def sticking_velocity(a_i, a_j, material, damping_time):
     """Greatest velocity [m/s] at which two spheres that meet head-on stick; inf where always, 0 without damping.
 
