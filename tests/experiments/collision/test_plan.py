@@ -58,7 +58,7 @@ def test_the_paper():
     ]
 
 
-@pytest.mark.parametrize("name", ["quick", "collision_short", "collision_study"])
+@pytest.mark.parametrize("name", ["quick", "collision_default", "collision_study"])
 def test_the_other_configs(name):
     merged = merge(config(), yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()))
     other = check(merged, SCHEMAS)
