@@ -16,10 +16,10 @@ DRIVES = ("prescribed", "torque", "literal")
 """What turns a grain: an omega that rises, an angular momentum that rises, or the equations as printed."""
 QUASI_STATIC = "quasi-static"
 
-UNREST = 0.01
-"""q_0, the number of the accuracy: the marks then lie within 1 % of those of smaller q_0 in the median of each type."""
-PACE = 0.05
-"""(d omega/dt)/omega^2 of a grain at rest."""
+PACE = 0.0025
+"""(d omega/dt)/omega^2 of a grain at rest, the number of the accuracy: see `ratd.validation.quasi_static`."""
+UNREST = 0.02
+"""q_0: the spin-up waits while the motion of the grain exceeds this part of its rotation."""
 DRAG = 1.0
 """c: motion in the turning frame decays at the rate c omega."""
 STEP = {"longest": 4e-9, "displacement": 2e-10, "travel": 2e-9, "calming": 0.1}
@@ -49,7 +49,7 @@ class How(NamedTuple):
 
 
 def how_to_turn(
-    kind, bound, *, drive="prescribed", unrest=None, pace=PACE, drag=DRAG, epsilon=None, angular_acceleration=None,
+    kind, bound, *, drive="prescribed", pace=None, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
     coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
 ):  # fmt: skip
     """Drive and integrator from the words of a user, see `ratd.spin_up`.
@@ -72,15 +72,15 @@ def how_to_turn(
     if drive not in DRIVES:
         raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
     paced = epsilon is not None or angular_acceleration is not None
-    if unrest is not None and (paced or drive == "literal"):
+    if pace is not None and (paced or drive == "literal"):
         raise InputError(
-            "unrest is for a spin-up that waits until the grain is quiet; it is given beside "
+            "pace is for a spin-up that waits until the grain is quiet; it is given beside "
             f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not wait."
         )
     if drive == "torque" and paced:
         raise InputError(
             "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
-            "quiet, and knows unrest only."
+            "quiet, and knows pace only."
         )
     omega_1 = FIRST_LOSS * bound
     nothing = {"unrest": np.nan, "pace": np.nan, "drag": np.nan, "epsilon": np.nan, "displacement": np.nan}
@@ -100,7 +100,7 @@ def how_to_turn(
         numbers = nothing | {"epsilon": np.nan if epsilon is None else float(epsilon)}
     else:
         motion = slow.quasi_static(
-            drive, omega_1=omega_1, unrest=UNREST if unrest is None else unrest, pace=pace, drag=drag
+            drive, omega_1=omega_1, pace=PACE if pace is None else pace, unrest=unrest, drag=drag
         )
         integrator = integrator or semi_implicit(**STEP)
         words |= {

@@ -66,11 +66,11 @@ def _check_paces(plan):
     for drive in plan.config["drives"]:
         where = "run and literal together" if drive == "literal" else "run"
         for kind in plan.config["types"]:
-            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("unrest", "epsilon", "angular_acceleration")}
-            if drive == "literal" and laws["unrest"] is not None or drive == "torque" and laws["unrest"] is None:
+            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("pace", "epsilon", "angular_acceleration")}
+            if drive == "literal" and laws["pace"] is not None or drive == "torque" and laws["pace"] is None:
                 raise InputError(
                     f"{_WHERE}: {where} give {laws} for the drive {drive}; allowed: "
-                    + ("null for unrest, since it does not wait" if drive == "literal" else "a number for unrest")
+                    + ("null for pace, since it does not wait" if drive == "literal" else "a number for pace")
                 )
             if sum(value is not None for value in laws.values()) != 1:
                 raise InputError(
