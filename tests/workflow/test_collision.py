@@ -8,7 +8,7 @@ from ratd.experiments.collision.plan import load
 from ratd.experiments.collision.run import at_rest
 from ratd.experiments.collision.stages import built, collided
 from ratd.pipeline import blocks, io
-from tiny_pipeline import ROOT, TINY, Pipeline
+from tiny_pipeline import ROOT, Pipeline
 
 CELL = "results/tiny/collision/runs/velocity/pair/sample_1/20mps_b0.nc"
 OWN = {
@@ -38,7 +38,7 @@ OWN = {
 
 def pipeline(folder, collision):
     made = Pipeline(folder)
-    config = {"results": "results/tiny", "spin_up": TINY, "collision": collision}
+    config = {"results": "results/tiny", "collision": collision}
     (folder / "tiny.yaml").write_text(yaml.safe_dump(config))
     return made
 
