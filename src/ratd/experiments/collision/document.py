@@ -6,7 +6,7 @@ and somebody rereads the sentence.
 
 import numpy as np
 
-from ratd.aggregates.mrn import moment_of_length
+from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.figures.look import is_equal
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
@@ -78,13 +78,14 @@ def values(table, thresholds, likeness):
         found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
         stick = row["sticking_velocity"]
         close = row["above"] - row["below"] <= WIDEST * row["velocity"]
-        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 0) if close else "–"
+        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if close else "–"
         found[f"energy {key}"] = with_error(row["energy_per_contact"], np.nan, 0)
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
         found[f"radius {key}"], found[f"q {key}"] = _alike(row)
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
+    found |= free_samples()
     found |= {
         "collisions": str(len(table)),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
@@ -92,6 +93,15 @@ def values(table, thresholds, likeness):
     }
     found |= {f"q of {radius * 1e6:g}": f"{moment_of_length(radius):.2f}" for radius in RADII}
     return found
+
+
+def free_samples(number=400, spheres=5000):
+    """What free samples of the MRN law scatter by, as texts: share of the largest sphere, L_4.6 [um], 16 to 84 %."""
+    samples = [mrn(spheres, seed, mass_within=None, length_within=None) for seed in range(number)]
+    shares = [radii[0] ** 3 / np.sum(radii**3) for radii in samples]
+    lengths = [sample_length(radii, 4.6) * 1e6 for radii in samples]
+    low, high = np.quantile([shares, lengths], [0.16, 0.84], axis=1)
+    return {name: f"{low[k]:.2f} to {high[k]:.2f}" for k, name in enumerate(("free share", "free length"))}
 
 
 def _threshold(row):
@@ -146,6 +156,15 @@ def claims(table, thresholds, likeness):
             mean("N_s_rest", "velocity", "mrn100", 30) - mean("N_s", "velocity", "314nm", 30)
         )
         < 0.15,
+        "at 45 m/s nearly all but the largest spheres is in pieces": mean("N_s_rest", "velocity", "mrn100", 45) > 0.8,
+        "without giants MRN holds best": mean("X", "velocity", "mrn100_to_800", 15)
+        > max(mean("X", "velocity", name, 15) for name in ("mrn100", "314nm", "314nm_giant")),
+        "without giants N_s of MRN is below that of equal spheres": mean("N_s", "velocity", "mrn100_to_800", 30)
+        < mean("N_s", "velocity", "314nm", 30) - 0.1,
+        "below the threshold MRN and 0.314 um are alike": abs(
+            mean("X", "velocity", "mrn100", 15) - mean("X", "velocity", "314nm", 15)
+        )
+        < 0.1,
         "one large sphere among equal ones has the same ceiling": mean("N_s", "velocity", "314nm_giant", 30) < 0.7,
         "at 30 m/s MRN does not hold together after 1.5 us": mean("X", "velocity", "mrn100", 30) < 0.3,
         "X at 0.6 us is more than twice that of the end": mean("X_early", "velocity", "mrn100", 30)
