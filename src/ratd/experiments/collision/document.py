@@ -9,6 +9,7 @@ import numpy as np
 from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.figures.scaling import WIDEST
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
@@ -19,10 +20,6 @@ COLUMNS = (
     "X", "N_s", "X_rest", "N_s_rest", "X_early", "N_s_early", "energy_half", "energy_end", "by_damping", "by_sliding",
     "by_rolling", "by_twisting", "single_share", "largest_share", "joined", "potential_share",
 )  # fmt: skip
-
-
-WIDEST = 0.35
-"""A fragmentation velocity is told where the velocities on both sides are no farther apart than this part of it."""
 
 
 def with_error(mean, error, digits=None):

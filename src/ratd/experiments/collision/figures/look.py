@@ -15,13 +15,19 @@ _SCALE = colormaps["viridis"]
 
 def colour_of(radius, radii):
     """Colour of a radius among some, by its place from the least to the greatest."""
-    radii = np.sort(np.unique(radii))
-    return _SCALE(0.9 * np.searchsorted(radii, radius) / max(len(radii) - 1, 1))
+    place, number = _place(radius, radii)
+    return _SCALE(0.9 * place / max(number - 1, 1))
 
 
 def marker_of(radius, radii):
     """Marker of a radius among some."""
-    return MARKERS[np.searchsorted(np.sort(np.unique(radii)), radius) % len(MARKERS)]
+    return MARKERS[_place(radius, radii)[0] % len(MARKERS)]
+
+
+def _place(radius, radii):
+    """Place of a radius among some from the least on, and how many there are; radii differ by rounding."""
+    radii = np.sort(np.unique(radii))
+    return int(np.argmin(np.abs(radii - radius))), len(radii)
 
 
 def radius_label(radius):

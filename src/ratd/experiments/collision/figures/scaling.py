@@ -8,6 +8,8 @@ from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import ONE_COLUMN, empty, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
+WIDEST = 0.35
+"""Fragmentation velocities are shown where the velocities on both sides are no farther apart than this part of them."""
 RATIO = 35.0
 """v_frag/v_stick that the printed velocities have at A = 0.5 ns (34 to 36)."""
 FACES = {"velocity": None, "spring": "white"}
@@ -16,7 +18,9 @@ MARKS = {0.5e-9: "o", 1.0e-9: "s", 1.5e-9: "^"}
 
 @styled
 def scaling(thresholds):
-    """v_frag against v_stick, a colour a radius, a marker a damping time, filled and open by friction.
+    """v_frag against v_stick: a colour a radius, a marker a damping time, open with springs.
+
+    Large markers have another surface energy.
 
     Parameters
     ----------
@@ -30,10 +34,10 @@ def scaling(thresholds):
     own = thresholds[
         (thresholds["impact_parameter"] == 0)
         & thresholds["sticking_velocity"].notna()
-        & thresholds["velocity"].notna()
+        & (thresholds["above"] - thresholds["below"] <= WIDEST * thresholds["velocity"])
         & thresholds["friction"].isin(FACES)
     ]
-    figure = new_figure(ONE_COLUMN, ONE_COLUMN, "Clusters and pairs of their spheres")
+    figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, "Clusters and pairs of their spheres")
     axes = figure.subplots()
     if not len(own):
         empty(axes, "no fragmentation velocities")
@@ -66,7 +70,7 @@ def scaling(thresholds):
         Line2D([], [], ls="none", marker="o", color="black", mfc="white", label="springs"),
         Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label=f"{RATIO:g} times"),
     ]
-    axes.legend(handles=handles, loc="lower right")
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
