@@ -26,9 +26,9 @@ def test_a_known_radius_is_found():
     equal = {radius: rows(curve(radius), rng) for radius in RADII}
     found = likeness(rows(curve(0.44e-6), rng), equal, "X", samples=100)
     assert found["velocities"] == 2 and found["at_end"] == 0.0 and found["misfit"] < 0.01
-    assert found["low"] <= found["radius"] <= found["high"]
-    assert found["radius"] == pytest.approx(0.44e-6, abs=3 * (found["high"] - found["low"]))
-    assert found["high"] - found["low"] < 0.03e-6
+    assert found["radius_low"] <= found["radius"] <= found["radius_high"]
+    assert found["radius"] == pytest.approx(0.44e-6, abs=3 * (found["radius_high"] - found["radius_low"]))
+    assert found["radius_high"] - found["radius_low"] < 0.03e-6
 
 
 def test_what_lies_beyond_all_radii_is_told():
@@ -54,7 +54,7 @@ def test_table():
         parts.append(
             own.assign(
                 law="velocity", cluster="mrn" if mixed else f"{radius:g}", impact_parameter=0.0, second_contact=0.5,
-                largest_radius=1e-6 if mixed else radius, mean_radius=radius, N_s=1 - own["X"],
+                largest_radius=1e-6 if mixed else radius, mean_sphere_radius=radius, N_s=1 - own["X"],
                 energy_half=own["X"] / 2,
             )
         )  # fmt: skip

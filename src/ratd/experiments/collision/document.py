@@ -116,7 +116,7 @@ def _alike(row):
     if not np.isfinite(row["radius"]):
         return "–", "–"
     beyond = " (end of the range)" if row["at_end"] else ""
-    radius = f"{row['radius'] / NM:.0f} ({row['low'] / NM:.0f}–{row['high'] / NM:.0f}){beyond}"
+    radius = f"{row['radius'] / NM:.0f} ({row['radius_low'] / NM:.0f}–{row['radius_high'] / NM:.0f}){beyond}"
     return radius, f"{row['q']:.1f} ({row['q_low']:.1f}–{row['q_high']:.1f}){beyond}"
 
 

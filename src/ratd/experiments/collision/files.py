@@ -1,7 +1,7 @@
 """Kinds of files of the collision, and the rows that go into them.
 
 A row of `clusters` is one cluster, one of `collisions` one collision. Of the pieces that a collision leaves, single
-spheres are only counted. Positions of snapshots are whole nanometres, which is what a picture needs.
+spheres are only counted. Positions of snapshots are rounded to a nanometre, which is what a picture needs.
 """
 
 import numpy as np
@@ -94,7 +94,7 @@ ROW_VALUES = {
     "X": ("1", "X at the end, Eq. 10"),
     "X_rest": ("1", "X of the mass without the largest sphere of each cluster"),
     "N_s_rest": ("1", "N_s of the mass without the largest sphere of each cluster"),
-    "mean_radius": ("m", "mean radius of the spheres"),
+    "mean_sphere_radius": ("m", "mean radius of the spheres"),
     "largest_radius": ("m", "radius of the largest sphere"),
     "largest_share": ("1", "its part of the mass of its cluster"),
     "single_mass": ("kg", "mass of all single spheres at the end"),
@@ -142,10 +142,11 @@ register(
             **over(("snapshot",), {"snapshot_time": ("s", "time of the snapshot")}),
             **over(
                 ("snapshot_monomer",),
+                {f"snapshot_{axis}": ("m", f"position along {axis}, to a nanometre") for axis in "xyz"},
+            ),
+            **over(
+                ("snapshot_monomer",),
                 {
-                    "snapshot_x": ("nm", "position along x"),
-                    "snapshot_y": ("nm", "position along y"),
-                    "snapshot_z": ("nm", "position along z"),
                     "snapshot_piece": ("1", "number of the piece, 0 the heaviest"),
                 },
                 "i4",
@@ -242,7 +243,7 @@ def collision_row(run, **names):
         row[name] = ("piece", found[name].values[several])
     if "snapshot_time" in run:
         row["snapshot_time"] = ("snapshot", run["snapshot_time"].values)
-        places = np.rint(run["snapshot_position"].values / NM).astype("i4")
+        places = np.rint(run["snapshot_position"].values / NM) * NM
         for k, axis in enumerate("xyz"):
             row[f"snapshot_{axis}"] = ("snapshot_monomer", places[:, :, k].ravel())
         row["snapshot_piece"] = ("snapshot_monomer", _ranked(run).ravel())
@@ -278,7 +279,7 @@ def _values(run, found, several):
         "X": found["X"].item(),
         "X_rest": (first - second) / rest.sum(),
         "N_s_rest": 1.0 - (first + second) / rest.sum(),
-        "mean_radius": radius.mean(),
+        "mean_sphere_radius": radius.mean(),
         "largest_radius": radius.max(),
         "largest_share": mass[largest[0]] / mass[owner == 0].sum(),
         "single_mass": float(found["piece_mass"].values[single].sum()),

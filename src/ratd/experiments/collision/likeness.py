@@ -21,11 +21,11 @@ COLUMNS = {
     "quantity": ("", "by what it is compared: X, N_s or energy_half"),
     "velocities": ("1", "number of velocities that both have"),
     "radius": ("m", "radius of the equal spheres that it is most like"),
-    "low": ("m", "16 % of the bootstrap"),
-    "high": ("m", "84 % of the bootstrap"),
+    "radius_low": ("m", "16 % of the bootstrap"),
+    "radius_high": ("m", "84 % of the bootstrap"),
     "q": ("1", "moment of the MRN law whose length that is"),
-    "q_low": ("1", "that of `low`"),
-    "q_high": ("1", "that of `high`"),
+    "q_low": ("1", "that of `radius_low`"),
+    "q_high": ("1", "that of `radius_high`"),
     "misfit": ("1", "root mean square difference that is left"),
     "at_end": ("1", "1 where the best radius is the least or the greatest that there is"),
 }
@@ -61,7 +61,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
     Returns
     -------
     dict
-        velocities, radius, low, high, misfit, at_end; NaN without a velocity that all have.
+        velocities, radius, radius_low, radius_high, misfit, at_end; NaN without a velocity that all have.
     """
     radii = np.sort(list(equal))
     common = set(cluster.loc[cluster[quantity].notna(), "velocity"])
@@ -69,7 +69,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
         common &= set(table.loc[table[quantity].notna(), "velocity"])
     common = sorted(common)
     if not common or len(radii) < 2:
-        nothing = dict.fromkeys(("radius", "low", "high", "misfit", "at_end"), np.nan)
+        nothing = dict.fromkeys(("radius", "radius_low", "radius_high", "misfit", "at_end"), np.nan)
         return {"velocities": len(common)} | nothing
     tables = [cluster, *(equal[radius] for radius in radii)]
     groups = [[np.flatnonzero(table["velocity"].to_numpy() == v) for v in common] for table in tables]
@@ -86,7 +86,8 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
     rng = np.random.Generator(np.random.PCG64(seed))
     low, high = np.quantile([best(rng)[0] for _ in range(samples)], [0.16, 0.84])
     at_end = float(radius in (grid[0], grid[-1]))
-    return {"velocities": len(common), "radius": radius, "low": low, "high": high, "misfit": misfit, "at_end": at_end}
+    ends = {"radius_low": low, "radius_high": high}
+    return {"velocities": len(common), "radius": radius, **ends, "misfit": misfit, "at_end": at_end}
 
 
 def likeness_table(table, samples=500):
@@ -100,7 +101,7 @@ def likeness_table(table, samples=500):
         Of the bootstrap.
     """
     table = table[table["impact_parameter"] == 0.0]
-    same = table["largest_radius"] <= table["mean_radius"] * (1.0 + 1e-9)
+    same = table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
     found = []
     for law, part in table.groupby("law", sort=False):
         alike = part[same.loc[part.index] & (part["second_contact"] == 0.5)]
@@ -110,6 +111,9 @@ def likeness_table(table, samples=500):
             for quantity in QUANTITIES:
                 row = likeness(own, wanted, quantity, samples)
                 row |= {"law": law, "cluster": cluster, "quantity": quantity}
-                row |= {q: moment_of_length(row[r]) for q, r in (("q", "radius"), ("q_low", "low"), ("q_high", "high"))}
+                row |= {
+                    q: moment_of_length(row[r])
+                    for q, r in (("q", "radius"), ("q_low", "radius_low"), ("q_high", "radius_high"))
+                }
                 found.append(row)
     return pd.DataFrame(found, columns=list(COLUMNS))

@@ -44,7 +44,7 @@ COLUMNS = {
     "surface_energy": ("J m-2", "surface energy gamma"),
     "second_contact": ("1", "part of the spheres that rolled to a second contact"),
     "n_monomers": ("1", "number of spheres of both clusters"),
-    "mean_radius": ("m", "mean radius of the spheres"),
+    "mean_sphere_radius": ("m", "mean radius of the spheres"),
     "largest_radius": ("m", "radius of the largest sphere"),
     "largest_share": ("1", "its part of the mass of its cluster"),
     "timestep": ("s", "time step"),
@@ -197,7 +197,7 @@ def threshold_table(table, material_of_energy, samples=2000):
     for names, part in table.groupby(["law", "cluster", "impact_parameter"], sort=False):
         threshold = fragmentation_velocity(part, samples=samples)
         one = part.iloc[0]
-        equal = one["largest_radius"] <= one["mean_radius"] * (1.0 + 1e-9)
+        equal = one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9)
         radius = one["largest_radius"] if equal else np.nan
         row = dict(zip(("law", "cluster", "impact_parameter"), names, strict=True)) | {
             name: one[name] for name in ("damping_time", "surface_energy", "friction")

@@ -38,14 +38,14 @@ def radius_label(radius):
 def label_of(table):
     """Text for the collisions of one cluster: the radius of its spheres, else its name."""
     one = table.iloc[0]
-    if one["largest_radius"] <= one["mean_radius"] * (1.0 + 1e-9):
+    if one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9):
         return radius_label(one["largest_radius"])
     return str(one["cluster"]).replace("_", " ")
 
 
 def is_equal(table):
     """Which collisions of a table are of equal spheres, Series of bool."""
-    return table["largest_radius"] <= table["mean_radius"] * (1.0 + 1e-9)
+    return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
 
 
 def means(table, quantity):

@@ -23,7 +23,7 @@ def positions(row):
     n = row.sizes.get("monomer", 0)
     if not n:
         raise InputError("figure: the collision has no snapshots; name it in snapshots.runs of the config")
-    places = np.stack([row[f"snapshot_{axis}"].values for axis in "xyz"], axis=1).reshape(-1, n, 3) * 1e-9
+    places = np.stack([row[f"snapshot_{axis}"].values for axis in "xyz"], axis=1).reshape(-1, n, 3)
     return row["snapshot_time"].values, places, row["snapshot_piece"].values.reshape(-1, n)
 
 
