@@ -139,7 +139,9 @@ def claims(table, thresholds, likeness):
     unequal = table[~is_equal(table)]
     ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
     ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
-    ratios = ratios[ratios["cluster"].isin(["570nm", "453nm", "396nm"])].dropna(subset="sticking_velocity")
+    ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
+        subset="sticking_velocity"
+    )
     at_half = ratios[ratios["damping_time"] == 0.5e-9]
     at_half, ratios = (own["velocity"] / own["sticking_velocity"] for own in (at_half, ratios))
     printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}

@@ -30,6 +30,8 @@ COLUMNS = {
     "at_end": ("1", "1 where the best radius is the least or the greatest that there is"),
 }
 register("collision_likeness", Kind("Which equal spheres a cluster is like", entries(COLUMNS)))
+FEWEST = 3
+"""Radii that must have a velocity for it to count."""
 POINTS = 201
 """Radii that are tried, evenly in the logarithm."""
 
@@ -90,6 +92,15 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
     return {"velocities": len(common), "radius": radius, **ends, "misfit": misfit, "at_end": at_end}
 
 
+def _with_common_velocities(own, equal):
+    """Collisions of a cluster, and of the radii that have all of the velocities that at least `FEWEST` radii share."""
+    shared = [
+        v for v in own["velocity"].unique() if sum((one["velocity"] == v).any() for one in equal.values()) >= FEWEST
+    ]
+    chosen = {radius: one for radius, one in equal.items() if set(shared) <= set(one["velocity"])}
+    return own[own["velocity"].isin(shared)], chosen
+
+
 def likeness_table(table, samples=500):
     """`COLUMNS` for every law and every cluster of unequal spheres of a table of central collisions.
 
@@ -107,7 +118,7 @@ def likeness_table(table, samples=500):
         alike = part[same.loc[part.index] & (part["second_contact"] == 0.5)]
         equal = dict(list(alike.groupby(alike["largest_radius"].round(12))))
         for cluster, own in part[~same.loc[part.index]].groupby("cluster", sort=False):
-            wanted = {radius: one for radius, one in equal.items() if set(own["velocity"]) & set(one["velocity"])}
+            own, wanted = _with_common_velocities(own, equal)
             for quantity in QUANTITIES:
                 row = likeness(own, wanted, quantity, samples)
                 row |= {"law": law, "cluster": cluster, "quantity": quantity}
