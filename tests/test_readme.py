@@ -19,7 +19,7 @@ def code(section, start, end):
 
 def test_one_grain_and_two_that_meet():
     """With a grain that takes a second, and without the last line of the first, whose spin-up may take long."""
-    lines = code("From Python", "one grain:", "Any spheres")
+    lines = code("From Python", "one grain:", "One cluster")
     assert "ratd.spin_up(own" in lines[-1] and "200e-9" in "".join(lines)
     own = ratd.grow("BA", 60e-9, "q-S", 0)
     names = {"position": own.position, "radius": own.radius}
@@ -36,6 +36,15 @@ def test_one_grain_and_two_that_meet():
     assert abs(meeting["residual"][-1]) < 0.03 * meeting["kinetic_translation"][0]
 
 
+def test_a_cluster_that_is_compressed_and_pulled():
+    """With one that takes a second."""
+    lines = code("From Python", "and pulled again:", "Own aggregates")
+    names = {"ratd": ratd}
+    for as_written, small in (("1024", "64"), ("strain_rate=1e-5", "strain_rate=3e-5")):
+        lines = [line.replace(as_written, small) for line in lines]
+    exec("\n".join(lines), names)
+    assert names["run"]["phi"][-1] == pytest.approx(0.3, rel=1e-3)
+    assert names["pulled"].attrs["tensile_strength"] > 0.0
 def test_two_clusters_that_collide():
     """With fewer spheres for a shorter time."""
     lines = code("Collisions", "From Python:", "Both clusters")

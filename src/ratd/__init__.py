@@ -22,7 +22,9 @@ _HOME = {
     "FileError": "base.errors",
     "MATERIALS": "base.materials",
     "Material": "base.materials",
-    "build_cluster": "aggregates.clusters",
+    "compress": "experiments.compression.run",
+    "compressive_strength": "experiments.compression.strength",
+    "build_cluster": "aggregates.packed_clusters",
     "collide": "experiments.collision.run",
     "cut_bound": "experiments.spin_up.cut_bound",
     "disruption": "experiments.spin_up.marks",
@@ -31,11 +33,13 @@ _HOME = {
     "fragmentation_velocity": "experiments.collision.fragmentation",
     "fit_ensemble": "experiments.spin_up.eq33",
     "grow": "aggregates.growth",
+    "grow_bcca": "aggregates.clusters",
     "mix": "base.materials",
     "mrn": "aggregates.mrn",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
     "spin_up": "experiments.spin_up.run",
+    "stretch": "experiments.compression.stretch",
 }
 __all__ = sorted([*_HOME, "laws"])
 

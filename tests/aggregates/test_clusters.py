@@ -1,98 +1,113 @@
-"""Clusters of given spheres: contacts, overlaps, the sphere that holds them, and what does not fit."""
+"""Clusters that grow by cluster-cluster aggregation."""
 
 import numpy as np
 import pytest
 
-from ratd.aggregates.clusters import build_cluster, filling_factor, number_of_equal_mass
-from ratd.aggregates.mrn import mrn
-from ratd.base.errors import InputError
-from ratd.base.materials import MATERIALS
+import ratd
+from ratd.aggregates.cluster_growth import first_touch
+from ratd.geometry.neighbours import close_pairs
+from ratd.laws.contact_constants import touching_distance
+from ratd.observables.structure import radius_of_gyration
 
-SILICA = MATERIALS["silica"]
-RADII = np.concatenate([[0.9e-6, 0.5e-6], np.linspace(0.4e-6, 0.05e-6, 80)])
-
-
-def overlaps(cluster):
-    """Overlap of all pairs, (n, n) [m], the naive way."""
-    apart = np.linalg.norm(cluster.position[:, None] - cluster.position[None], axis=2)
-    return cluster.radius[:, None] + cluster.radius[None] - apart
+ICE = ratd.MATERIALS["ice"]
+CONSTANTS = ICE.surface_energy, ICE.reduced_modulus
 
 
-def resting_overlap(radius):
-    """delta_eq of all pairs [m], Eq. 1 written out."""
-    r = radius[:, None] * radius[None] / (radius[:, None] + radius[None])
-    stiff = SILICA.youngs_modulus / (1 - SILICA.poisson_number**2)
-    return (6 * np.pi * SILICA.surface_energy * np.sqrt(r) / stiff) ** (2 / 3)
+def first_touch_of_all_pairs(moving, moving_radius, still, still_radius, direction):
+    """The same as `first_touch`, pair by pair."""
+    way = np.inf
+    for i, x in enumerate(moving):
+        for k, y in enumerate(still):
+            apart = y - x
+            along = apart @ direction
+            beside = apart @ apart - along**2
+            touch = touching_distance(moving_radius[i], still_radius[k], *CONSTANTS)
+            if beside < touch**2:
+                way = min(way, along - np.sqrt(touch**2 - beside))
+    return way
 
 
-@pytest.mark.parametrize("second_contact", [0.0, 0.5, 1.0])
-def test_every_contact_is_at_rest_and_there_are_as_many_as_asked_for(second_contact):
-    cluster = build_cluster(RADII, 2.2e-6, second_contact=second_contact, seed=3)
-    n = cluster.n_monomers
-    assert n == len(RADII) and (np.diff(cluster.radius) <= 0.0).all()
-    upper = np.triu_indices(n, 1)
-    overlap, wanted = overlaps(cluster)[upper], resting_overlap(cluster.radius)[upper]
-    touching = overlap > 0.0
-    np.testing.assert_allclose(overlap[touching], wanted[touching], rtol=2e-5)
-    contacts = touching.sum()
-    if second_contact == 0.0:
-        assert contacts == n - 1
-    elif second_contact == 1.0:
-        # all but the first two, where a place with two contacts was found
-        assert 2 * n - 3 - 4 <= contacts <= 2 * n - 3
-    else:
-        assert n - 1 + 0.3 * n < contacts < n - 1 + 0.7 * n
+def test_first_touch_is_that_of_all_pairs():
+    rng = np.random.default_rng(0)
+    hits = 0
+    for _ in range(50):
+        moving, still = rng.uniform(-6e-7, 6e-7, (12, 3)), rng.uniform(-6e-7, 6e-7, (9, 3))
+        radii = rng.uniform(2e-8, 1.5e-7, 12), rng.uniform(2e-8, 1.5e-7, 9)
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        moving += 4e-7 * rng.normal(size=3)
+        way = first_touch(moving, radii[0], still, radii[1], direction, *CONSTANTS)
+        slow = first_touch_of_all_pairs(moving, radii[0], still, radii[1], direction)
+        assert way == pytest.approx(slow, rel=1e-9) or way == slow == np.inf
+        hits += way < np.inf
+    assert 20 < hits < 50
 
 
-def test_all_stay_inside_and_the_centre_of_mass_is_the_origin():
-    cluster = build_cluster(RADII, 2.2e-6, seed=5)
-    np.testing.assert_allclose(cluster.mass @ cluster.position / cluster.mass.sum(), 0.0, atol=1e-18)
-    # the sphere that held them is about another point: no two surfaces are farther apart than it is wide
-    apart = np.linalg.norm(cluster.position[:, None] - cluster.position[None], axis=2)
-    assert (apart + cluster.radius[:, None] + cluster.radius[None]).max() <= 2 * 2.2e-6 * (1 + 1e-9)
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_cluster_is_a_tree_free_of_force_but_for_pairs_that_come_near_by_chance(seed):
+    cluster = ratd.grow_bcca(512, seed=seed)
+    i, j = cluster.contacts.T
+    distance = np.linalg.norm(cluster.position[i] - cluster.position[j], axis=1)
+    touch = touching_distance(1e-7, 1e-7, *CONSTANTS)
+    made = np.abs(distance / touch - 1.0) < 1e-9
+    assert made.sum() == 511
+    assert (distance[~made] > touch).all() and (~made).sum() < 10
+    assert len(close_pairs(cluster.position, np.full(512, 0.5 * touch * (1.0 - 1e-9)), 0.0)) == 0
+    assert np.allclose(cluster.position.mean(axis=0), 0.0, atol=1e-15)
 
 
-def test_a_large_sphere_that_leaves_no_room_beside_it_is_moved_aside():
-    cluster = build_cluster([1.0e-6, 0.8e-6, 0.1e-6], 2.0e-6, seed=1)
-    assert cluster.n_monomers == 3
+def test_the_radius_of_gyration_is_that_of_an_independent_code():
+    clusters = [ratd.grow_bcca(1024, seed=seed) for seed in range(60)]
+    size = np.array([radius_of_gyration(cluster.position, cluster.mass) for cluster in clusters]) / 1e-7
+    assert 35.0 < size.mean() < 39.0 and 3.0 < size.std() < 11.0
 
 
-def test_seeds():
-    same = [build_cluster(RADII, 2.2e-6, second_contact=0.5, seed=7).position for _ in range(2)]
-    assert np.array_equal(*same)
-    assert not np.array_equal(same[0], build_cluster(RADII, 2.2e-6, second_contact=0.5, seed=8).position)
+def test_the_fractal_dimension_is_near_1_9():
+    size = [
+        np.mean([radius_of_gyration(c.position, c.mass) for c in (ratd.grow_bcca(n, seed=s) for s in range(30))])
+        for n in (64, 4096)
+    ]
+    assert np.log(4096 / 64) / np.log(size[1] / size[0]) == pytest.approx(1.9, abs=0.15)
 
 
-def test_the_clusters_of_the_paper():
-    """N, phi of collision.md Sect. 4: equal mass in 4 um; contacts 1.5 N with half of the spheres rolled."""
-    cube = 0.2965 * 4.0**3
-    numbers = [number_of_equal_mass(radius, cube) for radius in (0.298, 0.314, 0.353, 0.396, 0.453, 0.57)]
-    assert numbers == [717, 613, 431, 306, 204, 102]
-    cluster = build_cluster(np.full(613, 0.314e-6), 4e-6, second_contact=0.5, seed=1)
-    assert filling_factor(cluster.radius, 4e-6) == pytest.approx(0.2965, rel=2e-3)
-    assert (np.triu(overlaps(cluster), 1) > 0.0).sum() / 613 == pytest.approx(1.5, abs=0.06)
-    whole = build_cluster(mrn(5000, 1), 4e-6, second_contact=0.5, seed=1)
-    assert whole.n_monomers == 5000
+def test_a_seed_gives_one_shape_of_any_material_and_copies_another():
+    ice, silicate = ratd.grow_bcca(64, seed=3), ratd.grow_bcca(64, "silicate", seed=3)
+    assert (ice.position == ratd.grow_bcca(64, seed=3).position).all()
+    assert silicate.position / 6e-7 == pytest.approx(ice.position / 1e-7, abs=0.2)
+    copies = ratd.grow_bcca(64, seed=3, copies=True)
+    assert not np.allclose(copies.position, ice.position)
+
+
+def test_with_copies_both_halves_have_the_same_distances():
+    position = ratd.grow_bcca(32, seed=1, copies=True).position
+    halves = [np.linalg.norm(half[:, None] - half[None], axis=2) for half in (position[:16], position[16:])]
+    assert halves[0] == pytest.approx(halves[1], abs=1e-16)
+
+
+def test_unequal_radii_are_those_given():
+    radii = np.linspace(5e-8, 3e-7, 128)
+    cluster = ratd.grow_bcca(128, "q-S", seed=0, radii=radii)
+    assert (np.sort(cluster.radius) == radii).all() and not (cluster.radius == radii).all()
+    assert cluster.n_contacts >= 127
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "said"),
     [
+        ({"n": 1000}, r"n is 1000; it must be a power of 2 from 2 on \(512 or 1024\)"),
+        ({"n": 1}, "n is 1; it must be a power of 2 from 2 on,"),
+        ({"n": 64.0}, "n is 64.0; it must be a power of 2"),
         (
-            {"radii": np.full(400, 0.2e-6), "radius": 1.5e-6},
-            r"do not fit: they need a filling factor phi of 0.948",
+            {"n": 64, "material": "q-S"},
+            "radius is None; it must be a number above 0, in m, and may be left out for ice",
         ),
-        ({"radii": [1e-6, 1e-6], "radius": 1.9e-6}, "the two largest spheres.* it must be at least 2e-06 m"),
-        ({"radii": [1e-6, -1e-6]}, "radii have the shape .* above 0"),
-        ({"radii": [1e-6]}, "at least two numbers"),
-        ({"radii": "many"}, "radii are no numbers"),
-        ({"radius": np.nan}, "radius is nan"),
-        ({"second_contact": 1.5}, "second_contact is 1.5; it must be a number from 0 to 1"),
-        ({"seed": -1}, "seed is -1"),
-        ({"material": "cheese"}, "The material is 'cheese'"),
+        ({"n": 64, "radius": -1.0}, "radius is -1.0; it must be a number above 0"),
+        ({"n": 64, "radii": [1e-7] * 63}, "radii must be 64 finite numbers above 0"),
+        ({"n": 64, "radii": [1e-7] * 64, "radius": 1e-7}, "radius and radii are both given"),
+        ({"n": 64, "radii": [1e-7] * 64, "copies": True}, "copies and radii are both given"),
+        ({"n": 64, "seed": -1}, "seed is -1; it must be a whole number of at least 0"),
     ],
 )
-def test_bad_input_is_refused_in_one_sentence(arguments, words):
-    with pytest.raises(InputError, match=words) as caught:
-        build_cluster(**{"radii": RADII, "radius": 2.2e-6} | arguments)
-    assert "\n" not in str(caught.value)
+def test_bad_input_is_one_sentence(arguments, said):
+    with pytest.raises(ratd.InputError, match=said):
+        ratd.grow_bcca(**arguments)

@@ -1,4 +1,5 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
+import re
 import sys
 from pathlib import Path
 
@@ -53,5 +54,5 @@ def piece_settings(check):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml", "config/collision.yaml"):
+for path in ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/collision.yaml"):
     checked(read_yaml, path)

@@ -28,6 +28,9 @@ ROW = "row"
 HOMES = {
     "grains": "ratd.aggregates.files",
     **dict.fromkeys(("spinup", "disruption", "table", "cells", "fit", "fragments"), "ratd.experiments.spin_up.files"),
+    **dict.fromkeys(("clusters", "compression"), "ratd.experiments.compression.files"),
+    **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
+    "tension_set": "ratd.experiments.compression.pull",
     **dict.fromkeys(("table1", "table2"), "ratd.experiments.spin_up.composition"),
     "parameters": "ratd.experiments.spin_up.parameters",
     "calibration": "ratd.experiments.spin_up.calibration",
@@ -48,6 +51,7 @@ HOMES = {
             "damping",
             "literal",
             "theory",
+            "compression",
             "growth",
             "relaxation",
             "energy",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from ratd.aggregates.clusters import build_cluster
+from ratd.aggregates.packed_clusters import build_cluster
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach, first_touch, random_turn
 

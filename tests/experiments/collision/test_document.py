@@ -10,7 +10,7 @@ import pytest
 
 from ratd.experiments.collision.document import claims, values, with_error
 from ratd.experiments.collision.tables import findings
-from ratd.pipeline.documents import fill
+from ratd.experiments.collision.slots import fill
 from tiny_pipeline import ROOT
 
 DOCS = ROOT / "docs"

@@ -7,7 +7,7 @@ spheres are only counted. Positions of snapshots are rounded to a nanometre, whi
 import numpy as np
 import xarray as xr
 
-from ratd.aggregates.clusters import filling_factor
+from ratd.aggregates.packed_clusters import filling_factor
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.mrn import sample_length
 from ratd.base.units import NM

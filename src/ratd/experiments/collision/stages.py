@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.aggregates.clusters import build_cluster, number_of_equal_mass
+from ratd.aggregates.packed_clusters import build_cluster, number_of_equal_mass
 from ratd.aggregates.mrn import mrn
 from ratd.base.materials import Material
 from ratd.experiments.collision.files import cluster_row, clusters_of, collision_row

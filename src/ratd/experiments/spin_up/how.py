@@ -10,14 +10,28 @@ from ratd.drives import rotating as fast
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
 
-__all__ = ["DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "TIMESTEP_FACTOR", "UNREST", "How", "how_to_turn"]
+__all__ = [
+    "DRAG",
+    "DRIVES",
+    "EPSILON",
+    "FIRST_LOSS",
+    "PACE",
+    "STRETCH",
+    "TIMESTEP_FACTOR",
+    "UNREST",
+    "How",
+    "how_to_turn",
+]
 
 DRIVES = ("prescribed", "torque", "literal")
 """What turns a grain: an omega that rises, an angular momentum that rises, or the equations as printed."""
 QUASI_STATIC = "quasi-static"
 
-PACE = 0.0025
-"""(d omega/dt)/omega^2 of a grain at rest, the number of the accuracy: see `ratd.validation.quasi_static`."""
+STRETCH = 2e-14
+"""Greatest stretch of a contact [m] in a step of a spin-up that goes on, the number of the accuracy: see
+`ratd.validation.quasi_static`."""
+PACE = 0.02
+"""(d omega/dt)/omega^2 of a grain at rest."""
 UNREST = 0.02
 """q_0: the spin-up waits while the motion of the grain exceeds this part of its rotation."""
 DRAG = 1.0
@@ -49,8 +63,8 @@ class How(NamedTuple):
 
 
 def how_to_turn(
-    kind, bound, *, drive="prescribed", pace=None, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
-    coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
+    kind, bound, *, drive="prescribed", stretch=None, pace=PACE, unrest=UNREST, drag=DRAG, epsilon=None,
+    angular_acceleration=None, coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
 ):  # fmt: skip
     """Drive and integrator from the words of a user, see `ratd.spin_up`.
 
@@ -71,19 +85,20 @@ def how_to_turn(
     """
     if drive not in DRIVES:
         raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
+    explicit = leapfrog(timestep_factor=timestep_factor, damping=damping)
     paced = epsilon is not None or angular_acceleration is not None
-    if pace is not None and (paced or drive == "literal"):
+    if stretch is not None and (paced or drive == "literal"):
         raise InputError(
-            "pace is for a spin-up that waits until the grain is quiet; it is given beside "
+            "stretch is for a spin-up that waits until the grain is quiet; it is given beside "
             f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not wait."
         )
     if drive == "torque" and paced:
         raise InputError(
             "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
-            "quiet, and knows pace only."
+            "quiet, and knows stretch only."
         )
     omega_1 = FIRST_LOSS * bound
-    nothing = {"unrest": np.nan, "pace": np.nan, "drag": np.nan, "epsilon": np.nan, "displacement": np.nan}
+    numbers = dict.fromkeys(("stretch", "unrest", "pace", "drag", "epsilon", "displacement"), np.nan)
     words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}
     if drive == "literal" or paced:
         if not paced:
@@ -91,16 +106,16 @@ def how_to_turn(
         motion = fast.rotating(
             drive, omega_1=omega_1, epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis
         )
-        integrator = integrator or leapfrog(timestep_factor=timestep_factor, damping=damping)
+        integrator = integrator or explicit
         words |= {
             "spin_up_law": fast.SPIN_UP_LAWS[motion.law],
             "coriolis": "explicit" if motion.explicit_coriolis else "exact",
             "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2 / fast.SOFT_START,
         }
-        numbers = nothing | {"epsilon": np.nan if epsilon is None else float(epsilon)}
+        numbers["epsilon"] = np.nan if epsilon is None else float(epsilon)
     else:
         motion = slow.quasi_static(
-            drive, omega_1=omega_1, pace=PACE if pace is None else pace, unrest=unrest, drag=drag
+            drive, omega_1=omega_1, stretch=STRETCH if stretch is None else stretch, pace=pace, unrest=unrest, drag=drag
         )
         integrator = integrator or semi_implicit(**STEP)
         words |= {
@@ -108,7 +123,7 @@ def how_to_turn(
             "coriolis": "explicit",
             "angular_acceleration": slow.rise(motion, 0.0),
         }
-        numbers = nothing | {"unrest": motion.unrest, "pace": motion.pace, "drag": motion.drag}
+        numbers |= {name: getattr(motion, name) for name in ("stretch", "unrest", "pace", "drag")}
     numbers["displacement"] = float(getattr(integrator, "displacement", np.nan))
     words["integrator"] = "semi-implicit" if hasattr(integrator, "displacement") else "leapfrog"
     if words["integrator"] == "semi-implicit":

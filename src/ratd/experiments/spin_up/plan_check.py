@@ -66,11 +66,11 @@ def _check_paces(plan):
     for drive in plan.config["drives"]:
         where = "run and literal together" if drive == "literal" else "run"
         for kind in plan.config["types"]:
-            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("pace", "epsilon", "angular_acceleration")}
-            if drive == "literal" and laws["pace"] is not None or drive == "torque" and laws["pace"] is None:
+            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("stretch", "epsilon", "angular_acceleration")}
+            if drive == "literal" and laws["stretch"] is not None or drive == "torque" and laws["stretch"] is None:
                 raise InputError(
                     f"{_WHERE}: {where} give {laws} for the drive {drive}; allowed: "
-                    + ("null for pace, since it does not wait" if drive == "literal" else "a number for pace")
+                    + ("null for stretch, since it does not wait" if drive == "literal" else "a number for stretch")
                 )
             if sum(value is not None for value in laws.values()) != 1:
                 raise InputError(
