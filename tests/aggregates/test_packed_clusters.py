@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ratd.aggregates.packed_clusters import build_cluster, filling_factor, number_of_equal_mass
 from ratd.aggregates.mrn import mrn
+from ratd.aggregates.packed_clusters import build_cluster, filling_factor, number_of_equal_mass
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 

@@ -45,7 +45,7 @@ def scaling(thresholds):
     for _, row in own.iterrows():
         colour = colour_of(row["radius"], RADII)
         face = FACES[row["friction"]] or colour
-        marker = MARKS.get(row["damping_time"], "D")
+        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"])), "D")
         size = 6.5 if abs(row["surface_energy"] - 0.025) > 1e-6 else 4.0
         axes.errorbar(
             row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, ms=size,
