@@ -45,6 +45,8 @@ def test_a_cluster_that_is_compressed_and_pulled():
     exec("\n".join(lines), names)
     assert names["run"]["phi"][-1] == pytest.approx(0.3, rel=1e-3)
     assert names["pulled"].attrs["tensile_strength"] > 0.0
+
+
 def test_two_clusters_that_collide():
     """With fewer spheres for a shorter time."""
     lines = code("Collisions", "From Python:", "Both clusters")

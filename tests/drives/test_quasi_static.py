@@ -61,7 +61,7 @@ def test_run_tells_how_it_was_made(run):
     attrs = run.attrs
     assert attrs["spin_up_law"] == "quasi-static" and attrs["integrator"] == "semi-implicit"
     assert attrs["stretch"] == 5e-14 and attrs["smaller_steps"] == 0 and math.isnan(attrs["epsilon"])
-    assert (np.diff(run.omega) > 0).all() and (np.diff(run.steps) > 0).all()
+    assert (np.diff(run.omega) > 0).all() and (np.diff(run.steps_so_far) > 0).all()
     np.testing.assert_array_equal(run.omega, run.frame_omega)
 
 

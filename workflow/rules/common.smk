@@ -54,5 +54,10 @@ def piece_settings(check):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/collision.yaml"):
+for path in (
+    "config/config.yaml",
+    "config/spin_up.yaml",
+    "config/compression.yaml",
+    "config/collision.yaml",
+):
     checked(read_yaml, path)

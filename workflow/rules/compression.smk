@@ -158,9 +158,7 @@ for name in compression.FIGURES:
         conda:
             "../envs/ratd.yaml"
         params:
-            task=task(
-                "figure", f"ratd.experiments.compression.figures.{name}:draw"
-            ),
+            task=task("figure", f"ratd.experiments.compression.figures.{name}:draw"),
             settings={},
         message:
             f"Draw the {name} of the compression"

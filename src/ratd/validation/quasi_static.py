@@ -102,7 +102,7 @@ def _spin(grain, vary, value):
             row[f"angular_momentum_{mark}"] = float(run.angular_momentum[before])
             row[f"axis_ratio_{mark}"] = float(run.axis_c[before] / run.axis_a[before])
             if mark == "mass_75":
-                row["steps_mass_75"] = int(run.steps[after[0]])
+                row["steps_mass_75"] = int(run.steps_so_far[after[0]])
     return row | {
         "outcome": run.attrs["end_reason"],
         "steps": run.attrs["steps"],
