@@ -64,6 +64,8 @@ def read_data(data=DATA, spun=SPUN):
         Pulled clusters.
     grains : dict or None
         See `ratd.experiments.compression.findings.spun_up`.
+    lammps : pandas.DataFrame or None
+        See `ratd.experiments.compression.findings.of_lammps`.
     """
     data = Path(data)
     sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
@@ -72,7 +74,9 @@ def read_data(data=DATA, spun=SPUN):
     tension = data / "tension.nc"
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(io.read(spun, "table").to_pandas()) if Path(spun).is_file() else None
-    return sets, entries, grains
+    peer = data / "lammps.nc"
+    lammps = io.read(peer, "validation_compression").to_dataframe() if peer.is_file() else None
+    return sets, entries, grains, lammps
 
 
 def redraw(folder=".", into=None):
@@ -87,14 +91,14 @@ def redraw(folder=".", into=None):
     """
     folder = Path(folder)
     into = folder if into is None else Path(into)
-    sets, entries, grains = read_data(folder / DATA, folder / SPUN)
+    sets, entries, grains, lammps = read_data(folder / DATA, folder / SPUN)
     plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
     for name in plan.figures:
         figure = draw(name, plan, sets, entries, grains, folder / DATA)
         if figure is not None:
             save(figure, into / FIGURES / f"{name}.png")
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
-    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains)))
+    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, lammps)))
 
 
 def draw(name, plan, sets, entries, grains, data):
@@ -106,13 +110,15 @@ def draw(name, plan, sets, entries, grains, data):
         path = data / "snapshots.nc"
         return module.figure3(io.read(path, "compression_snapshots")) if path.is_file() else None
     tables = [sets[wanted] for wanted in plan.sets_of(name) if wanted in sets]
+    if not tables:
+        return None
     if name == "monomers":
         equal, *others = tables
         return module.monomers(equal, others, [name_of(table) for table in others])
     if "set" in plan.config["figures"][name]:
         one = {"figure12": "figure4"}.get(name, name)
         drawn = getattr(import_module(f"ratd.experiments.compression.figures.{one}"), one)
-        return drawn(tables[0]) if tables else None
+        return drawn(tables[0])
     return getattr(module, name)(tables)
 
 

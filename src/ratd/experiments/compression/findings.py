@@ -39,6 +39,7 @@ WAYS = ("rolling", "twisting", "sliding", "damping")
 def of_set(name, table):
     """Numbers of one set: name -> value, each name beginning with that of the set."""
     found = {"n": table.sizes["seed_number"], "N": table["n_monomers"].item()}
+    found["steps"] = float(np.mean(table["steps"].values)) / 1e6
     found["static"] = float(table["static_from"].values[0])
     found["P0"] = float(table["rolling_pressure"].values[0])
     found["start"] = float(np.mean(table["phi_start"].values))
@@ -176,6 +177,25 @@ def spun_up(grains, mark="omega_disr"):
     }
 
 
+def of_lammps(table):
+    """Pressure and contacts in LAMMPS over those here, of the same clusters, means over bins of phi and seeds.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_compression``.
+    """
+    found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
+    for name, low, high in (("low", 0.04, 0.12), ("high", 0.12, 0.4)):
+        part = table[(table["phi"] > low) & (table["phi"] < high)]
+        over = part.assign(pressure=part["pressure"] / part["line"])
+        mean = over.groupby(["seed", "code"])[["pressure", "n_contacts"]].mean().unstack("code")
+        for column in ("pressure", "n_contacts"):
+            ratio = mean[column]["LAMMPS"] / mean[column]["ratd"]
+            found[f"lammps.{column}_{name}"] = Measured(*mean_of(ratio.to_numpy()))
+    return found
+
+
 def verdicts(values, sets):
     """Words on which sentences of the document rest."""
     found = {}
@@ -189,6 +209,9 @@ def verdicts(values, sets):
     for name in sets:
         if name != "fiducial":
             found[f"{name}.same"] = "agrees" if _same(values, name) else "differs"
+    if "xi_p48_32" in values:
+        alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
+        found["high_density"] = "does not depend" if alike else "depends"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
@@ -200,7 +223,7 @@ def _same(values, name):
     return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
 
 
-def findings(sets, entries, spun):
+def findings(sets, entries, spun, lammps=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -211,6 +234,8 @@ def findings(sets, entries, spun):
         Of the kind ``tension_set``.
     spun : dict or None
         From `spun_up`.
+    lammps : pandas.DataFrame, optional
+        See `of_lammps`.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
@@ -226,6 +251,8 @@ def findings(sets, entries, spun):
     )
     if entries is not None:
         values |= of_tension(entries)
+    if lammps is not None:
+        values |= of_lammps(lammps)
     if spun is not None:
         over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
         for kind in np.unique(spun["type"]):

@@ -15,6 +15,7 @@ FIGURES = (
     "high_density",
     "tension",
     "monomers",
+    "fewer_steps",
 )
 CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
 RUN = "<results>/compression/{set}/seed_{seed}.nc"
@@ -141,7 +142,7 @@ class Plan:
         step = own["semi_implicit"]
         if step is not None:
             lengths = {key.removesuffix("_nm"): step[key] * NM for key in ("displacement_nm", "travel_nm")}
-            step = {"longest": step["longest_t0"], **lengths}
+            step = {"longest": step["longest_t0"], "calming": step["calming"], **lengths}
         names = ("strain_rate", "k_n", "until_phi", "timestep_factor", "scheme", "snapshots")
         return {key: own[key] for key in names} | {"semi_implicit": step}
 

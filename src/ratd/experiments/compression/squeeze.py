@@ -21,15 +21,15 @@ def integrator_of(settings, time_unit):
     Parameters
     ----------
     settings : dict
-        ``timestep_factor`` of the explicit step, and ``semi_implicit``: None, or a dict with ``longest`` in t_0 and
-        ``displacement`` and ``travel`` [m].
+        ``timestep_factor`` of the explicit step, and ``semi_implicit``: None, or a dict with ``longest`` in t_0,
+        ``displacement`` and ``travel`` [m], and ``calming``.
     time_unit : float
         t_0 [s].
     """
     own = settings["semi_implicit"]
     if own is None:
         return leapfrog(timestep_factor=settings["timestep_factor"])
-    return semi_implicit(longest=own["longest"] * time_unit, displacement=own["displacement"], travel=own["travel"])
+    return semi_implicit(**own | {"longest": own["longest"] * time_unit})
 
 
 def squeezed(grain, settings, **options):

@@ -8,7 +8,7 @@ from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import TIME
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.step import run, until
-from ratd.experiments.compression.run import TIMESTEP_FACTOR
+from ratd.experiments.compression.run import K_N, TIMESTEP_FACTOR
 from ratd.experiments.compression.static import box_rate
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.relax import find_rest, start_anew
@@ -72,7 +72,7 @@ def stretch(compressed, strain_rate=3e-6, *, axes="x", law=None, timestep_factor
         raise InputError("compressed must be what ratd.compress returned, with the state at its end.")
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
-    law = jkr(damping="constant", constant_damping=0.01) if law is None else law
+    law = jkr(damping="constant", constant_damping=K_N) if law is None else law
     integrator = leapfrog(timestep_factor=timestep_factor) if integrator is None else integrator
     edges = compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, compressed.attrs["time_unit"])
