@@ -10,7 +10,23 @@ from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up import grain_table, marks, run_files
 from ratd.pipeline import blocks, io, kinds
 
-SI = {"1", "m", "s", "m s-1", "kg", "kg m2", "kg m2 s-1", "kg m-3", "J", "J m-2", "N", "Pa", "rad", "rad s-1", "rad s-2"}
+SI = {
+    "1",
+    "m",
+    "s",
+    "m s-1",
+    "kg",
+    "kg m2",
+    "kg m2 s-1",
+    "kg m-3",
+    "J",
+    "J m-2",
+    "N",
+    "Pa",
+    "rad",
+    "rad s-1",
+    "rad s-2",
+}
 EVERY_VARIABLE = [(kind, name) for kind in kinds.HOMES for name in kinds.kind_of(kind).variables]
 
 
