@@ -28,7 +28,7 @@ rule build_clusters:
     conda:
         "../envs/ratd.yaml"
     params:
-        task=task("run", "ratd.experiments.collision.stages:build", "clusters"),
+        task=task("run", "ratd.experiments.collision.stages:build", "built_clusters"),
         settings=lambda w: COLLISIONS.build(w.material, w.cluster),
     message:
         "Build clusters {wildcards.cluster} of {wildcards.material}"
@@ -53,7 +53,7 @@ rule relax_clusters:
     conda:
         "../envs/ratd.yaml"
     params:
-        task=task("run", "ratd.experiments.collision.stages:relax", "clusters"),
+        task=task("run", "ratd.experiments.collision.stages:relax", "built_clusters"),
         settings=lambda w: {"law": COLLISIONS.law(w.law)},
     message:
         "Bring clusters {wildcards.cluster} to rest, law {wildcards.law}"

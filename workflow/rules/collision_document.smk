@@ -35,7 +35,7 @@ rule study_samples:
     conda:
         "../envs/ratd.yaml"
     params:
-        task=task("run", "ratd.experiments.collision.stages:build", "clusters"),
+        task=task("run", "ratd.experiments.collision.stages:build", "built_clusters"),
         settings=COLLISIONS.cluster(COLLISIONS.materials["silica"], "mrn")
         | {"samples": [1, 2, 3]},
     message:

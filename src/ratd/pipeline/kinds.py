@@ -37,7 +37,7 @@ HOMES = {
     "formulae": "ratd.experiments.spin_up.formulae",
     "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
-    **dict.fromkeys(("clusters", "collisions"), "ratd.experiments.collision.files"),
+    **dict.fromkeys(("built_clusters", "collisions"), "ratd.experiments.collision.files"),
     **dict.fromkeys(
         ("collision_table", "collision_thresholds", "collision_clusters"), "ratd.experiments.collision.tables"
     ),

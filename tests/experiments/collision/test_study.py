@@ -179,7 +179,7 @@ def test_table_1(done, tmp_path):
     cluster = study.built(plan(done).cluster(SILICA, "equal"), 1)
     path = tmp_path / "velocity" / "equal.nc"
     row = cluster_row(cluster, 1.6e-6, "equal")
-    io.write(path, blocks.block([row], "clusters", SILICA), "clusters")
+    io.write(path, blocks.block([row], "built_clusters", SILICA), "built_clusters")
     (found,) = cluster_table([path]).to_dict("records")
     assert found["law"] == "velocity" and found["n_monomers"] == cluster.n_monomers
     assert found["filling_factor"] == pytest.approx(cluster.n_monomers * 0.4**3 / 1.6**3)

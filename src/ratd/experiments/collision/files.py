@@ -22,7 +22,7 @@ __all__ = ["SERIES", "cluster_row", "clusters_of", "collision_row"]
 _REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
 
 register(
-    "clusters",
+    "built_clusters",
     Kind(
         "Clusters of spheres",
         {
@@ -207,7 +207,7 @@ def clusters_of(dataset):
             type="cluster",
             seed=row["seed"].item(),
         )
-        for row in rows_of(dataset, "clusters")
+        for row in rows_of(dataset, "built_clusters")
     }
 
 

@@ -64,12 +64,12 @@ def build(job):
     def make(sample, checkpoint):
         return cluster_row(built(settings, sample), settings["cluster_radius"], settings["name"])
 
-    job.block(job.output[0], "clusters", Material(**settings["material"]), settings["samples"], make)
+    job.block(job.output[0], "built_clusters", Material(**settings["material"]), settings["samples"], make)
 
 
 def relax(job):
     """Bring all samples of a cluster to rest under a law, the stage `relax`."""
-    file = io.read(job.input[0], "clusters")
+    file = io.read(job.input[0], "built_clusters")
     clusters, law = clusters_of(file), law_from(job.settings["law"])
     radius = dict(zip(file["seed"].values.tolist(), file["cluster_radius"].values.tolist(), strict=True))
 
@@ -77,7 +77,7 @@ def relax(job):
         return cluster_row(at_rest(clusters[sample], law), radius[sample], file.attrs["cluster"])
 
     material = next(iter(clusters.values())).material
-    job.block(job.output[0], "clusters", material, list(clusters), make)
+    job.block(job.output[0], "built_clusters", material, list(clusters), make)
 
 
 def told(say):
@@ -138,7 +138,7 @@ def collided(cluster, settings, rotation, *, snapshot_every=0, checkpoint=None, 
 def collide_all(job):
     """All rotations of one cluster at one velocity, the stage `collide`."""
     settings = job.settings
-    file = io.read(job.input[0], "clusters")
+    file = io.read(job.input[0], "built_clusters")
     cluster = clusters_of(file)[settings["sample"]]
 
     def make(rotation, checkpoint):

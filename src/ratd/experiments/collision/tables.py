@@ -224,7 +224,7 @@ def cluster_table(paths):
     """
     found = []
     for path in paths:
-        file = io.read(path, "clusters")
+        file = io.read(path, "built_clusters")
         mean = {name: float(np.mean(file[name].values)) for name in CLUSTERS if name in file.variables}
         mean["n_contacts"] = float(np.mean(file["n_contacts"].values / file["n_monomers"].values))
         names = {"law": str(path).split("/")[-2], "cluster": file.attrs["cluster"], "samples": file.sizes["row"]}

@@ -42,4 +42,6 @@ def figure2(samples):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from the cluster of its settings as built."""
-    return figure2([row["radius"].values for row in rows(io.read(files["built"][0], "clusters"), "clusters")])
+    return figure2(
+        [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
+    )
