@@ -13,6 +13,7 @@ from ratd.pipeline import blocks, io, kinds
 SI = {
     "1",
     "m",
+    "m2",
     "s",
     "m s-1",
     "kg",
