@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import pandas as pd
 import pytest
 
 import ratd
@@ -44,3 +45,16 @@ def test_a_cluster_that_is_compressed_and_pulled():
     exec("\n".join(lines), names)
     assert names["run"]["phi"][-1] == pytest.approx(0.3, rel=1e-3)
     assert names["pulled"].attrs["tensile_strength"] > 0.0
+
+
+def test_two_clusters_that_collide():
+    """With fewer spheres for a shorter time."""
+    lines = code("Collisions", "From Python:", "Both clusters")
+    small = "[0.4e-6, 0.3e-6, 0.3e-6, 0.2e-6]"
+    text = "\n".join(lines).replace("ratd.mrn(5000, seed=1), radius=4e-6", f"{small}, radius=1.2e-6")
+    text = text.replace('law="dmt")', 'law="dmt", duration=2e-7)')
+    assert small in text and "duration" in text
+    names = {"ratd": ratd, "table": pd.DataFrame({"velocity": [1.0, 2.0], "X": [0.3, 0.0]})}
+    exec(text, names)
+    assert names["pieces"]["piece_members"].values.sum() == 8 and names["run"].sizes["snapshot"] == 31
+    assert ratd.fragmentation_velocity(names["table"])["velocity"] == pytest.approx(1.5)

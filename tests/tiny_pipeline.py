@@ -19,7 +19,7 @@ TINY = {
     "seeds": {"first": 0, "number": 6},
     "block_size": 6,
     "small_grains": None,
-    "run": {"epsilon": 0.2},
+    "run": {"stretch": 1e-12},
     "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
     "ensemble": {"bootstrap": 20},
     "figures": {
@@ -35,8 +35,6 @@ TINY = {
             "seeds": {"first": 0, "number": 1},
             "xi_c_nm": [6.4],
             "T_vis_ps": [9],
-            "epsilon": 0.2,
-            "timestep_factor": 0.1,
             "literal": {"angular_acceleration": 1.0e17, "timestep_factor": 0.1},
         },
         "calibration": {

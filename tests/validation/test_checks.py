@@ -430,9 +430,8 @@ def test_plan_names_every_piece_once():
         "production_timestep_factor": TIMESTEP_FACTOR, "material": "co-S", "epsilon_large": None, "type": "BAM1",
         "a_eff": pytest.approx(450e-9), "seed": 2,
     }  # fmt: skip
-    for check in ("theory", "energy"):
-        for piece in plan.pieces["full"][check].values():
-            assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)
+    for piece in plan.pieces["full"]["energy"].values():
+        assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)
     printed = plan.pieces["full"]["literal"]
     assert len({(piece["type"], piece["a_eff"], piece["seed"]) for piece in printed.values()}) == len(printed) >= 8
 

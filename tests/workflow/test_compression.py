@@ -29,6 +29,6 @@ def test_clusters_are_grown_compressed_pulled_and_drawn_and_nothing_runs_twice(t
         assert (results / "figures" / f"compression_{name}.png").stat().st_size > 10_000
     table = io.read(results / "compression" / "fiducial.nc", "compression_set")
     assert table["seed"].values.tolist() == [0, 1] and table["phi"].values[-1] < 0.2
-    assert sorted(path.name for path in (results / "compression").iterdir()) == ["fiducial", "fiducial.nc"]
+    assert {"fiducial", "fiducial.nc"} <= {path.name for path in (results / "compression").iterdir()}
     assert "to go" not in done.stdout or "phi" in done.stdout
     assert pipeline.planned("compression") == {}

@@ -6,6 +6,7 @@ from pathlib import Path
 from snakemake.utils import min_version
 
 from ratd.base.errors import InputError
+from ratd.experiments.collision.plan import check as collision_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
 from ratd.pipeline import jobs
 from ratd.pipeline.config import read_yaml
@@ -53,5 +54,10 @@ def piece_settings(check):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml"):
+for path in (
+    "config/config.yaml",
+    "config/spin_up.yaml",
+    "config/compression.yaml",
+    "config/collision.yaml",
+):
     checked(read_yaml, path)

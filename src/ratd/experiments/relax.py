@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.drives.free import free
 from ratd.engine.contacts import update_contact_rates
-from ratd.engine.forces import contact_forces
+from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import CONTACTS, DT_DRIFT, STEPS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
@@ -14,7 +14,7 @@ from ratd.engine.step import run, until
 from ratd.geometry.box import open_space
 from ratd.geometry.shape import principal_axes
 from ratd.laws.contact_constants import pull_off_force, reduced_radius
-from ratd.laws.contact_fields import A_I, A_J, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX, SCRATCH_SIZE
+from ratd.laws.contact_fields import A_I, A_J, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX
 from ratd.laws.jkr_with_springs import jkr
 from ratd.laws.material_pair import SURFACE_ENERGY
 from ratd.observables.energy import kinetic
@@ -109,7 +109,7 @@ def round_length(steps):
 @jit
 def residual_force(state, law, box):
     """Greatest net force on any monomer [N] in a frame at rest; torques count as force times radius."""
-    scratch = np.zeros(SCRATCH_SIZE)
+    scratch = working_space()
     drift = state.scalar[DT_DRIFT]
     state.scalar[DT_DRIFT] = 0.0
     contact_forces(state, law, box, scratch, 0.0)
