@@ -160,10 +160,10 @@ A drive that waits until the grain is quiet is measured: one grain a cell is run
 projected. One grain a cell is run faster than the config says, and what of its time grows with the steps is multiplied
 up. The drive `literal` is run for {SHORT} steps, and theory says how many there are.
 
-Cells that are cheap are run in full as well. *Full over projected* compares them with what was projected: the geometric
-mean, the scatter from cell to cell as a factor, and the numbers of steps. This mean corrects the cells that were not run
-in full. They are larger, and may differ from it by as much as the scatter. The *range* is for all of them being off by
-the scatter together. *Cells missing* are those whose runs failed.
+Cells that are cheap are run in full as well. *Full over projected* compares them with what was projected: the
+geometric mean, the scatter from cell to cell as a factor, and the numbers of steps. This mean corrects the cells that
+were not run in full. They are larger, and may differ from it by as much as the scatter. The *range* is for all of them
+being off by the scatter together. *Cells missing* are those whose runs failed.
 """
 
 

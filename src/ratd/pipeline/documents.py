@@ -1,9 +1,9 @@
 """Documents: a template that a person wrote, with slots for numbers.
 
 A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
-error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. ``{{name | words}}`` has words that stand there
-as long as there is no value; every other slot must have one. A *verdict* is ``{{name=holds}}``: it prints the word, and
-is an error when the data give another one. Then a person has to read the sentence again.
+error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. ``{{name | words}}`` has words that stand
+there as long as there is no value; every other slot must have one. A *verdict* is ``{{name=holds}}``: it prints the
+word, and is an error when the data give another one. Then a person has to read the sentence again.
 
 Lines between ``<!-- if name -->`` (or ``if not name``) and ``<!-- end -->`` stand only where there are data of this
 name, that is values that begin with ``name.``; such parts may stand in each other.
