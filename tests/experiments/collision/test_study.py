@@ -19,7 +19,7 @@ from ratd.experiments.collision.figures.scaling import scaling
 from ratd.experiments.collision.figures.snapshots import picture, row_of
 from ratd.experiments.collision.plan import Plan
 from ratd.experiments.collision.tables import COLUMNS, THRESHOLDS, cluster_table, collision_table, threshold_table
-from ratd.pipeline import blocks, io
+from ratd.pipeline import blocks, io, queue
 from ratd.pipeline.kinds import as_dataset
 
 SILICA = MATERIALS["silica"]
@@ -68,10 +68,10 @@ def done(tmp_path_factory):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        study.work(plan(folder), folder / "data", say=stop)
-    assert study.work(plan(folder), folder / "data", until=0.0, say=said.append) == 5
-    assert study.work(plan(folder), folder / "data", say=said.append) == 0
-    assert study.work(plan(folder), folder / "data", say=said.append) == 0
+        queue.work(study.tasks(plan(folder), folder / "data"), say=stop)
+    assert queue.work(study.tasks(plan(folder), folder / "data"), until=0.0, say=said.append) == 5
+    assert queue.work(study.tasks(plan(folder), folder / "data"), say=said.append) == 0
+    assert queue.work(study.tasks(plan(folder), folder / "data"), say=said.append) == 0
     assert len(said) == 8 and said[0].startswith("velocity equal sample 1 2 m/s rotation 0: X ")
     return folder
 
@@ -83,9 +83,8 @@ def files(done):
 def test_tables_hold_each_collision_once_in_order(done):
     rows = [(row["cluster"].item(), row["velocity"].item(), row["seed"].item()) for row in all_rows(done)]
     assert rows == [(name, v, seed) for name in ("equal", "unequal") for v in (2.0, 25.0) for seed in (0, 1)]
-    assert study.state(plan(done), done / "data").splitlines() == [
-        "velocity equal: 4 of 4 collisions",
-        "velocity unequal: 4 of 4 collisions",
+    assert queue.state(study.tasks(plan(done), done / "data"), "collisions").splitlines() == [
+        f"{done}/data/velocity/{cluster}.nc: 4 of 4 collisions" for cluster in ("equal", "unequal")
     ]
     assert len({row["source"].item() for row in all_rows(done)}) == 1
 
@@ -95,14 +94,14 @@ def all_rows(done):
 
 
 def test_an_undisturbed_queue_gives_the_same_bytes(done, tmp_path):
-    study.work(plan(tmp_path), tmp_path / "data", say=lambda text: None)
+    queue.work(study.tasks(plan(tmp_path), tmp_path / "data"), say=lambda text: None, processes=2)
     for path in files(done):
         assert (tmp_path / path.relative_to(done)).read_bytes() == path.read_bytes()
 
 
 def test_other_settings_under_the_same_name_are_refused(done):
-    with pytest.raises(InputError, match="holds collisions of a law or cluster with other settings"):
-        study.work(plan(done, cluster_radius_um=1.7), done / "data")
+    with pytest.raises(InputError, match="equal.nc: holds rows with other settings than the config has"):
+        study.tasks(plan(done, cluster_radius_um=1.7), done / "data")
 
 
 def test_columns_of_the_tables(done):

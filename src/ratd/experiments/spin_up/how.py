@@ -89,6 +89,11 @@ def how_to_turn(
             "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
             "quiet, and knows stretch only."
         )
+    if isinstance(integrator, SemiImplicit) and (paced or drive == "literal"):
+        raise InputError(
+            "integrator is semi-implicit and the spin-up does not wait (drive literal, epsilon or "
+            "angular_acceleration); that step is right only while the grain is quiet."
+        )
     omega_1 = FIRST_LOSS * bound
     numbers = dict.fromkeys(("stretch", "unrest", "pace", "drag", "epsilon", "displacement"), np.nan)
     words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}

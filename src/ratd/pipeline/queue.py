@@ -1,0 +1,226 @@
+"""A queue of long computations whose rows are kept in small files: stopped at any time, it goes on where it was.
+
+A row that is there is never computed again, also not with other source: it says itself which source it is of.
+"""
+
+import argparse
+import sys
+import time
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from pathlib import Path
+from typing import NamedTuple
+
+from ratd.base.errors import FileError, InputError
+from ratd.pipeline import blocks, io
+from ratd.pipeline.partial import locked
+from ratd.pipeline.provenance import canonical, settings_hash
+
+__all__ = ["Table", "Task", "command", "state", "work"]
+
+WRITE_EVERY = 20.0
+"""Rows of a table that are finished within so long [s] are written together; a kill costs no more than that."""
+
+
+class Table:
+    """The rows that there are, in a file.
+
+    Parameters
+    ----------
+    path : path-like
+    kind : str
+        A kind of file, see `ratd.pipeline.kinds`.
+    key : sequence of str
+        The variables, or attributes of a row, that name a row.
+    material : ratd.Material
+    settings : dict
+        What all rows have in common: those of a file that is there must be the same.
+
+    Raises
+    ------
+    InputError
+        If the file is of other settings.
+    """
+
+    def __init__(self, path, kind, key, material, settings):
+        self.path, self._kind, self._key, self._material = Path(path), kind, key, material
+        self._attributes = {"settings": canonical(settings), "settings_hash": settings_hash(settings)}
+        self.rows = []
+        if self.path.exists():
+            file = io.read(self.path, kind)
+            if file.attrs.get("settings_hash") != self._attributes["settings_hash"]:
+                raise InputError(
+                    f"{self.path}: holds rows with other settings than the config has; give what changed another name "
+                    "there, or remove the file"
+                )
+            self.rows = blocks.rows(file, kind)
+        self.keys = {self.key_of(row) for row in self.rows}
+        self._written = -WRITE_EVERY
+        self._waiting = False
+
+    def key_of(self, row):
+        """What names a row, tuple of float."""
+        return tuple(float(row[name].item() if name in row.variables else row.attrs[name]) for name in self._key)
+
+    def add(self, row):
+        """Put a row to the others, and write the file if that was not done just before."""
+        self.rows.append(row)
+        self.keys.add(self.key_of(row))
+        self._waiting = True
+        if time.monotonic() - self._written > WRITE_EVERY:
+            self.write()
+
+    def write(self):
+        """Write the rows that are not yet in the file, in the order of the keys."""
+        if self._waiting:
+            self.rows.sort(key=self.key_of)
+            io.write(self.path, blocks.block(self.rows, self._kind, self._material, self._attributes), self._kind)
+            self._written, self._waiting = time.monotonic(), False
+
+
+class Task(NamedTuple):
+    """A row to compute.
+
+    Attributes
+    ----------
+    table : Table
+    key : tuple of float
+    make : callable
+        Without arguments; returns the row and a sentence on it. Where there are several processes it has to be picklable.
+    """
+
+    table: Table
+    key: tuple
+    make: object
+
+
+def work(tasks, *, until=None, say=print, processes=1):
+    """Compute the rows that are not there.
+
+    Parameters
+    ----------
+    tasks : iterable of Task
+        In the order in which they are to be computed.
+    until : float, optional
+        `time.monotonic()` after which none is begun.
+    say : callable
+        Told in a sentence what was done.
+    processes : int
+
+    Returns
+    -------
+    int
+        How many rows are left.
+    """
+    left = [task for task in tasks if task.key not in task.table.keys]
+    done = 0
+    results = _one_by_one(left, until) if processes == 1 else _side_by_side(left, until, processes)
+    try:
+        for task, row, sentence, seconds in results:
+            task.table.add(row)
+            done += 1
+            say(f"{sentence}, {seconds:.0f} s, {len(left) - done} left")
+    finally:
+        for table in {id(task.table): task.table for task in left}.values():
+            table.write()
+    return len(left) - done
+
+
+def _one_by_one(tasks, until):
+    for task in tasks:
+        if until is not None and time.monotonic() > until:
+            return
+        yield task, *_timed(task.make)
+
+
+def _side_by_side(tasks, until, processes):
+    """As `_one_by_one`, in the order in which rows are finished."""
+    coming, running = iter(tasks), {}
+    with ProcessPoolExecutor(processes) as pool:
+        while True:
+            while len(running) < processes and not (until is not None and time.monotonic() > until):
+                task = next(coming, None)
+                if task is None:
+                    break
+                running[pool.submit(_timed, task.make)] = task
+            if not running:
+                return
+            finished, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in finished:
+                yield running.pop(future), *future.result()
+
+
+def _timed(make):
+    start = time.monotonic()
+    row, sentence = make()
+    return row, sentence, time.monotonic() - start
+
+
+def state(tasks, what):
+    """What there is of some tasks, a line each table; `what` are the rows, in the plural."""
+    lines = {}
+    for task in tasks:
+        there, wanted = lines.get(task.table.path, (0, 0))
+        lines[task.table.path] = there + (task.key in task.table.keys), wanted + 1
+    return "\n".join(f"{path}: {there} of {wanted} {what}" for path, (there, wanted) in lines.items())
+
+
+def command(words, *, module, what, config, data, load, tasks):
+    """The command of a queue.
+
+    Parameters
+    ----------
+    words : sequence of str or None
+        The command line.
+    module : module
+        Whose text is the help.
+    what : str
+        The rows, in the plural.
+    config : sequence of path-like
+        Config files, each over those before it, where none is given.
+    data : path-like
+        Folder of the tables where none is given.
+    load : callable
+        Config files -> plan, with `results`.
+    tasks : callable
+        Plan, folder of the tables -> list of `Task`.
+
+    Returns
+    -------
+    int
+        The exit status: 0, 1 for bad input, 3 where the time was up before all was done.
+    """
+    parser = argparse.ArgumentParser(
+        prog=f"python -m {module.__spec__.name}",
+        description=module.__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--config", action="append", help=f"config files (default {', '.join(map(str, config))})")
+    parser.add_argument("--data", default=data, help=f"folder of the tables (default {data})")
+    parser.add_argument("--minutes", type=float, help=f"begin no {what} after so long")
+    parser.add_argument("--processes", type=int, default=1, help=f"{what} side by side (default 1)")
+    parser.add_argument("--list", action="store_true", help="say what there is and what is left")
+    arguments = parser.parse_args(words)
+
+    def say(text):
+        print(text, file=sys.stderr, flush=True)
+
+    try:
+        plan = load(*(arguments.config or config))
+        wanted = tasks(plan, arguments.data)
+        if arguments.list:
+            print(state(wanted, what))
+            return 0
+        until = None if arguments.minutes is None else time.monotonic() + 60 * arguments.minutes
+        with locked(Path(plan.results, "queue.lock"), _Log(say)):
+            left = work(wanted, until=until, say=say, processes=arguments.processes)
+    except (InputError, FileError) as error:
+        say(f"error: {error}")
+        return 1
+    return 3 if left else 0
+
+
+class _Log:
+    """What `locked` takes for a log."""
+
+    def __init__(self, say):
+        self.info = say
