@@ -53,6 +53,11 @@ rule write_config:
         "workflow/scripts/analyse.py"
 
 
+# Snakemake compares results with what it wrote down of them, where it did.
+if workflow.is_main_process:
+    checked(unrecorded.check, workflow.rules, config["results"])
+
+
 # What is finished needs no pieces any more: a forced rerun is to compute it anew.
 onsuccess:
     tidy(config["results"])

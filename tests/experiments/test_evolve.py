@@ -29,7 +29,7 @@ NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
         ({"position": None}, "position is None"),
         ({"position": NAN}, "position has the shape .* finite numbers"),
         ({"position": PAIR[:, :2]}, r"position has the shape \(2, 2\)"),
-        ({"position": "far"}, "must be arrays of numbers"),
+        ({"position": "far"}, "position is not an array of numbers"),
         ({"velocity": NAN}, "velocity has the shape"),
         ({"spin": [1.0, 2.0]}, r"spin has the shape \(2,\)"),
         ({"material": "cheese"}, "The material is 'cheese'; allowed are"),

@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import signal
+import subprocess
 import time
 
 import pytest
@@ -200,14 +201,74 @@ def test_kill_in_the_middle_then_the_same_command_again(finished, tmp_path):
 
 
 def test_damaged_input_ends_its_job_with_a_name_and_touches_nothing_else(copy_of):
+    whole = copy_of.files()
     path = copy_of.folder / GRAINS
     path.write_bytes(path.read_bytes()[:1000])
     before = copy_of.files()
     done = copy_of.run(RUNS)
     assert done.returncode != 0
     assert f"error: {GRAINS}: is damaged" in done.stdout and "Traceback" not in done.stdout
+    # once more at the end, where one looks
+    last = done.stdout.splitlines()[-1]
+    assert GRAINS in last and last.endswith("remove it, and the same command makes it anew")
     after = copy_of.files()
     assert after == {name: content for name, content in before.items() if name != RUNS}
+    path.unlink()
+    assert copy_of.run(RUNS).returncode == 0
+    assert copy_of.files() == whole
+
+
+def test_a_file_of_other_grains_in_the_place_of_an_input_is_refused(copy_of):
+    shutil.copy(copy_of.folder / GRAINS.replace("BAM2", "BA"), copy_of.folder / GRAINS)
+    done = copy_of.run(RUNS)
+    assert done.returncode != 0
+    assert done.stdout.splitlines()[-1].endswith(
+        f"error: {GRAINS}: has the type BA, but lies where BAM2 belongs: remove it, and the same command makes it anew"
+    )
+
+
+def test_results_copied_elsewhere_are_used_if_they_are_what_the_plan_makes(copy_of):
+    shutil.rmtree(copy_of.folder / ".snakemake")
+    assert copy_of.planned() == {}
+    copy_of.write_config(TINY | {"run": {"epsilon": 0.3}, "figures": TINY["figures"] | {"figure6": None}})
+    done = copy_of.run("--dry-run")
+    assert done.returncode != 0
+    *_, last = done.stdout.splitlines()
+    assert last.startswith(
+        "results/tiny: files that Snakemake has no record of were made with other settings or another"
+    )
+    assert "those of now (2 in results/tiny/spinup), for example results/tiny/spinup/prescribed" in last
+    shutil.rmtree(copy_of.folder / "results" / "tiny" / "spinup")
+    assert copy_of.planned()["spin_up"] == 2
+
+
+def test_source_of_copied_results_is_that_of_now_or_they_are_named(copy_of):
+    shutil.rmtree(copy_of.folder / ".snakemake")
+    growth = copy_of.own_source() / "aggregates" / "growth.py"
+    growth.write_text(growth.read_text() + "\nNEW_CONSTANT = 1.0\n")
+    done = copy_of.run("--dry-run")
+    assert done.returncode != 0 and "2 in results/tiny/grains" in done.stdout.splitlines()[-1]
+
+
+def test_on_a_full_disk_the_last_line_says_so(tmp_path):
+    """On a small disk in memory, which only root may make."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=3000k", "none", str(folder)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("no small disk can be made here")
+    try:
+        pipeline = Pipeline(folder)
+        with open(folder / "filling", "wb") as filling:
+            filling.write(bytes(shutil.disk_usage(folder).free - 30_000))
+        done = pipeline.run(GRAINS)
+        assert done.returncode != 0
+        said = f"grow q-S BAM2 50 nm 0-5: error: {GRAINS}: cannot be written (No space left on device)"
+        assert done.stdout.splitlines()[-1] == said
+        (folder / "filling").unlink()
+        assert pipeline.run(GRAINS).returncode == 0
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
 
 
 def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):

@@ -1,4 +1,5 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
+import atexit
 import sys
 from pathlib import Path
 
@@ -6,7 +7,7 @@ from snakemake.utils import min_version
 
 from ratd.base.errors import InputError
 from ratd.experiments.spin_up.plan import check as spin_up_plan
-from ratd.pipeline import jobs
+from ratd.pipeline import first_error, jobs, unrecorded
 from ratd.pipeline.config import read_yaml
 from ratd.pipeline.partial import tidy
 from ratd.validation.plan import Checks
@@ -14,6 +15,11 @@ from ratd.validation.plan import Checks
 min_version("9.27")
 
 jobs.release_stale_locks()
+
+# Told again at the very end, below all that Snakemake says of it.
+if workflow.is_main_process:
+    first_error.begin()
+    atexit.register(lambda: print(first_error.kept(), end="", file=sys.stderr))
 
 
 def checked(read, *arguments):
@@ -49,6 +55,12 @@ def figure_settings(name):
 def piece_settings(check):
     """Function of the wildcards that gives the settings of a piece of a check."""
     return lambda w: CHECKS.pieces[w.extent][check][w.piece]
+
+
+def say(notes):
+    """Tell what the plan leaves out."""
+    if workflow.is_main_process:
+        print(*notes, sep="\n", end="\n" if notes else "", file=sys.stderr)
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.

@@ -12,6 +12,8 @@ FIGURES = ("figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "fi
 """Figures that are drawn for each drive."""
 COMMON_FIGURES = ("figure1", "figure10", "calibration", "formulae")
 """Figures that have no drive to choose."""
+ALL_FIGURES = ("figure1", "figure4", "figure5", "figure6", "figure8", "figure9", "figure10", "calibration", "formulae")
+"""Keys of `figures`; figures 2 and 7 show all that there is."""
 
 GRAINS = "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
 RUNS = "<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
@@ -39,10 +41,11 @@ def check(config, schemas="config/schema"):
     Raises
     ------
     InputError
-        One sentence that names the first key that is wrong, and what is allowed.
+        One sentence for each key that is wrong, with what is allowed.
     """
     shared, own, materials = configs.section(config, "spin_up", schemas)
-    plan = Plan(own, materials, shared["results"])
+    plan = Plan(configs.with_parts(own, {"figures": ALL_FIGURES}), materials, shared["results"])
+    plan.notes = plan_check.leave_out_absent(plan, configs.base("spin_up", schemas))
     plan_check.check(plan, shared["materials_file"])
     return plan
 
@@ -58,11 +61,17 @@ class Plan(Settings):
         Table 2 and the materials of the user.
     results : str
         Folder of all results.
+
+    Attributes
+    ----------
+    notes : list of str
+        What was left out because the config has no such cells.
     """
 
     def __init__(self, config, materials, results):
         super().__init__(config, materials)
         self.results = results.rstrip("/") or "/"
+        self.notes = []
 
     @property
     def figures(self):

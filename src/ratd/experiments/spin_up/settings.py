@@ -36,6 +36,11 @@ class Settings(Cells):
         self.materials = materials
 
     @property
+    def snapshot_grains(self):
+        """Grains whose positions are kept, list of dict; empty where snapshots is null."""
+        return (self.config["snapshots"] or {"grains": []})["grains"]
+
+    @property
     def radii(self):
         """Arguments of `ratd.aggregates.growth.RadiusDistribution` [m]."""
         growth = self.config["growth"]
@@ -87,7 +92,7 @@ class Settings(Cells):
         cell = (material, kind, size)
         snapshots = [
             grain["seed"]
-            for grain in self.config["snapshots"]["grains"]
+            for grain in self.snapshot_grains
             if (grain["material"], grain["type"], size_label(grain["size_nm"])) == cell
             and first <= grain["seed"] <= last
         ]
