@@ -54,8 +54,9 @@ rule write_config:
 
 
 # Snakemake compares results with what it wrote down of them, where it did.
-if workflow.is_main_process:
-    checked(unrecorded.check, workflow.rules, config["results"])
+if workflow.is_main_process and not workflow.dag_settings.forceall:
+    forced = workflow.dag_settings.forcerun
+    checked(unrecorded.check, workflow.rules, config["results"], forced)
 
 
 # What is finished needs no pieces any more: a forced rerun is to compute it anew.

@@ -18,7 +18,7 @@ __all__ = ["check"]
 _RECORDS = Path(".snakemake", "metadata")
 
 
-def check(rules, results):
+def check(rules, results, forced=()):
     """Raise InputError where results without a record were made with another source or other settings.
 
     Parameters
@@ -27,6 +27,8 @@ def check(rules, results):
         Their params `task` and `settings` are those of `ratd.pipeline.jobs`.
     results : path-like
         Folder of all results.
+    forced : collection of str, optional
+        Names of rules, or files, that are made anew whatever there is.
 
     Raises
     ------
@@ -35,13 +37,18 @@ def check(rules, results):
     """
     results = Path(results)
     rules = [rule for rule in rules if hasattr(rule.params, "task") and hasattr(rule.params, "settings")]
-    wrong = [path for path in sorted(results.rglob("*.nc")) if not _recorded(path) and _is_other(path, rules)]
+    wrong = {}  # file -> name of its rule
+    for path in sorted(results.rglob("*.nc")):
+        rule = None if _recorded(path) else next((rule for rule in rules if rule.is_producer(str(path))), None)
+        if rule is not None and not {rule.name, str(path)} & set(forced) and _is_other(path, rule):
+            wrong[path] = rule.name
     if wrong:
         folders = Counter(path.relative_to(results).parts[0] for path in wrong)
         listed = ", ".join(f"{number} in {results / folder}" for folder, number in folders.items())
         raise InputError(
             f"{results}: files that Snakemake has no record of were made with other settings or another source than "
-            f"those of now ({listed}), for example {wrong[0]}; remove them, and the same command makes them anew, or "
+            f"those of now ({listed}), for example {next(iter(wrong))}; the same command with "
+            f"--forcerun {' '.join(dict.fromkeys(wrong.values()))} makes them anew with all that follows from them, or "
             "set results to another folder"
         )
 
@@ -55,11 +62,8 @@ def _recorded(path):
     return _RECORDS.joinpath(*(f"@{part}" for part in parts[:-1]), parts[-1]).is_file()
 
 
-def _is_other(path, rules):
-    """Whether a file is one that a rule would make otherwise; not so where no rule makes it, or it cannot be read."""
-    rule = next((rule for rule in rules if rule.is_producer(str(path))), None)
-    if rule is None:
-        return False
+def _is_other(path, rule):
+    """Whether a file is one that its rule would make otherwise; not so where it cannot be read."""
     try:
         with netCDF4.Dataset(path) as file:
             found = {name: file.getncattr(name) for name in ("code_hash", "settings_hash")}
