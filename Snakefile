@@ -54,8 +54,9 @@ rule write_config:
 
 
 # Snakemake compares results with what it wrote down of them, where it did.
-if workflow.is_main_process and not workflow.dag_settings.forceall:
-    forced = workflow.dag_settings.forcerun
+if workflow.is_main_process and not {"--forceall", "-F"} & set(sys.argv):
+    # what is forced is known to Snakemake only after it has read this file
+    forced = sys.argv if {"--forcerun", "-R"} & set(sys.argv) else ()
     checked(unrecorded.check, workflow.rules, config["results"], forced)
 
 

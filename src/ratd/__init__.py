@@ -30,7 +30,9 @@ _HOME = {
     "mix": "base.materials",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
+    "read_particles": "aggregates.particles",
     "spin_up": "experiments.spin_up.run",
+    "write_particles": "aggregates.particles",
 }
 __all__ = sorted([*_HOME, "laws"])
 
