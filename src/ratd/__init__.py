@@ -15,6 +15,8 @@ Any spheres, by any contact law, in open space or in a periodic box:
 
 from importlib import import_module
 
+__version__ = "1.0.0"
+
 # Loaded on first use: drawing a figure must not wait for compiled code, and a source hash must not follow this file.
 _HOME = {
     "Grain": "aggregates.grain",

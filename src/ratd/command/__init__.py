@@ -12,6 +12,7 @@ from importlib import import_module
 
 import click
 
+from ratd import __version__
 from ratd.base.errors import FileError, InputError
 
 __all__ = ["main"]
@@ -47,7 +48,7 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"max_content_width": 100})
-@click.version_option(package_name="ratd")
+@click.version_option(__version__)
 def main():
     """The mechanics of dust aggregates, every monomer integrated.
 

@@ -6,12 +6,12 @@ own name. It holds no time, host or path, so the same content gives the same byt
 """
 
 import hashlib
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from ratd import __version__
 from ratd.base.errors import FileError, InputError
 from ratd.pipeline import kinds
 from ratd.pipeline.atomic import atomic, reason, write_text
@@ -82,7 +82,9 @@ def _described(dataset, kind, where):
     attributes = {
         "Conventions": CONVENTIONS,
         "title": layout.title,
-        "source": f"ratd {metadata.version('ratd')}",
+        "source": f"ratd {__version__}",
+        # without a time: the same content gives the same bytes
+        "history": f"made by ratd {__version__} from the settings, source and inputs named here",
         "file_kind": kind,
         "file_format": kinds.FORMAT,
     }
