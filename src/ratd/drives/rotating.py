@@ -20,13 +20,16 @@ from ratd.engine.layout import (
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
-OMEGA = CLOCK
-"""Of `state.drive`: angular velocity of the frame [rad/s]."""
-ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS, OWN_INERTIA = range(1, 9)
+GREATEST = CLOCK
+"""Of `state.drive`: the greatest angular velocity so far [rad/s]."""
+(
+    ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS, OWN_INERTIA, OMEGA,
+    ANGULAR_MOMENTUM, UNREST,
+) = range(1, 12)  # fmt: skip
 """... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last
-step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments;
-moments of inertia of its
-monomers about their own centres, added up [kg m2]."""
+step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments; of the
+largest one the moments of inertia of its monomers about their own centres, added up [kg m2]; angular velocity of the
+frame [rad/s]; angular momentum of the largest fragment [kg m2/s]; its unrest (see `ratd.drives.quasi_static`)."""
 
 CENTRE_EVERY = 4096
 """Steps after which the origin is put back to the centre of mass.
@@ -89,7 +92,7 @@ class Rotating(NamedTuple):
         state.drive[FRAGMENTS] = fragments
         state.drive[OWN_INERTIA] = own_inertia(state)
         omega, acceleration = angular_velocity(self, state.scalar[TIME])
-        state.drive[OMEGA] = omega
+        state.drive[OMEGA] = state.drive[GREATEST] = omega
         state.drive[ACCELERATION] = acceleration
         if changed:
             # They were those of the old fragment; nothing can be foretold of the new one before its first step.
@@ -108,6 +111,12 @@ class Rotating(NamedTuple):
         if state.counter[STEPS] % CENTRE_EVERY == 0:
             centre(state)
 
+    def load(self, state, kick):
+        pass
+
+    def longest_step(self, state):
+        return math.inf
+
     def move(self, state, box, kick, dt):
         drive, scalar = state.drive, state.scalar
         omega, domega, unwind = drive[OMEGA], drive[ACCELERATION], drive[UNWIND]
@@ -121,7 +130,9 @@ class Rotating(NamedTuple):
             excess = momentum / inertia
             drive[UNWIND] = turn_to_take_out(excess, drive[EXCESS], unwind)
             drive[EXCESS] = excess
+            drive[ANGULAR_MOMENTUM] = inertia * omega + momentum
         drive[OMEGA], drive[ACCELERATION] = angular_velocity(self, scalar[TIME] + dt)
+        drive[GREATEST] = drive[OMEGA]
         scalar[FASTEST] = fastest if abs(momentum) < np.inf else math.nan
 
 

@@ -49,6 +49,12 @@ class Squeezing(NamedTuple):
     def sample(self, state, law):
         pass
 
+    def load(self, state, kick):
+        pass
+
+    def longest_step(self, state):
+        return math.inf
+
     def move(self, state, box, kick, dt):
         _move(state, box, kick, dt)
 

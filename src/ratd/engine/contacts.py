@@ -6,7 +6,7 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.engine.layout import (
-    CONTACTS, DT, INV_MASS, LOST_BROKEN, LOST_DAMP, LOST_MADE, MASS, MONOMERS, RADIUS, ROW, WX, WY, WZ, X, Y, Z,
+    CONTACTS, INV_MASS, LOST_BROKEN, LOST_DAMP, LOST_MADE, MASS, MONOMERS, RADIUS, ROW, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.laws.contact_fields import (
     A_I, A_J, DAMPING_RATE, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX, NCY, NCZ, STEP,
@@ -193,7 +193,4 @@ def update_contact_rates(state, law, integrator):
         if implicit:
             rate = total[i] * monomer[i * _ROW + INV_MASS] + total[j] * monomer[j * _ROW + INV_MASS]
         contact[contact_start(law, k) + DAMPING_RATE] = rate
-    if integrator.timestep > 0.0:
-        state.scalar[DT] = integrator.timestep
-    elif n_contacts > 0:
-        state.scalar[DT] = integrator.timestep_factor * step
+    integrator.set_step(state, step)

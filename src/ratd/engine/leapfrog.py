@@ -5,12 +5,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ratd.base.errors import InputError
+from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.engine.forces import contact_forces
-from ratd.engine.layout import DT, DT_DRIFT, STEPS, TIME
+from ratd.engine.layout import DT, DT_CONTACTS, DT_DRIFT, FASTEST, STEPS, TIME
 
 SAMPLE_EVERY = 64
 """Steps between two samples that a drive may take for its means."""
+GROW_EVERY, GROWTH = 64, 1.25
+"""A step that the greatest speed has shortened grows by this factor after so many steps, up to what is allowed."""
 DAMPINGS = ("implicit", "explicit")
 
 
@@ -34,7 +37,19 @@ class Leapfrog(NamedTuple):
     timestep: float
     implicit_damping: bool
 
-    def step(self, state, law, drive, box, scratch):
+    def set_step(self, state, shortest):
+        if self.timestep > 0.0:
+            state.scalar[DT] = self.timestep
+        elif shortest < np.inf:
+            state.scalar[DT] = state.scalar[DT_CONTACTS] = self.timestep_factor * shortest
+
+    def prepare(self, state, law):
+        return 0
+
+    def renew(self, state, law, work):
+        return work
+
+    def step(self, state, law, drive, box, scratch, work):
         scalar = state.scalar
         dt = scalar[DT]
         # From the middle of the last move to that of the next; half a step from the start, where nothing has moved.
@@ -42,11 +57,29 @@ class Leapfrog(NamedTuple):
         ended = contact_forces(state, law, box, scratch, kick)
         if state.counter[STEPS] % SAMPLE_EVERY == 0:
             drive.sample(state, law)
+        drive.load(state, kick)
         drive.move(state, box, kick, dt)
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
         state.counter[STEPS] += 1
         return ended
+
+    def limit(self, state, law, drive, least, work):
+        if self.timestep == 0.0:
+            limit_step(state, self.timestep_factor * least)
+
+
+@jit
+def limit_step(state, farthest):
+    """Let no monomer move farther than this [m] in the next step; a step that is shorter than need be grows.
+
+    When it grows depends on the number of steps alone, so that a run in pieces has the bits of one at once.
+    """
+    scalar = state.scalar
+    if state.counter[STEPS] % GROW_EVERY == 0 and scalar[DT] < scalar[DT_CONTACTS]:
+        scalar[DT] = min(GROWTH * scalar[DT], scalar[DT_CONTACTS])
+    if scalar[FASTEST] * scalar[DT] > farthest:
+        scalar[DT] = farthest / scalar[FASTEST]
 
 
 def leapfrog(*, timestep_factor=0.125, timestep=None, damping="implicit"):

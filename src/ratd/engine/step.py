@@ -94,6 +94,7 @@ def advance(state, law, drive, box, integrator, until):
     near, n_near = near_pairs(state, box, far, near_reach)
     travel = 0.0
     drive.follow(state, False)
+    work = integrator.prepare(state, law)
     while True:
         if counter[LARGEST_CONTACTS] <= until.fewest_contacts:
             return FEW_CONTACTS
@@ -104,7 +105,7 @@ def advance(state, law, drive, box, integrator, until):
         if counter[CONTACTS] + n_near > state.pair_i.shape[0]:
             return FULL
 
-        ended = integrator.step(state, law, drive, box, scratch)
+        ended = integrator.step(state, law, drive, box, scratch, work)
         dt = scalar[DT_DRIFT]
         if not scalar[FASTEST] < np.inf:
             return NOT_FINITE
@@ -125,8 +126,8 @@ def advance(state, law, drive, box, integrator, until):
                 append_contact(state, law, box, touching[p, 0], touching[p, 1], image, dt, False)
             changed = True
         if changed:
-            update_contact_rates(state, law, integrator)
-            drive.follow(state, True)
+            _take_note(state, law, drive, integrator)
+            work = integrator.renew(state, law, work)
 
         travel += scalar[FASTEST] * dt
         scale = growth(box, scalar, near_edges)
@@ -150,11 +151,16 @@ def advance(state, law, drive, box, integrator, until):
                 near, n_near = near_pairs(state, box, far, near_reach)
                 travel = 0.0
                 if gone > 0:
-                    update_contact_rates(state, law, integrator)
-                    drive.follow(state, True)
-        limit = integrator.timestep_factor * least
-        if integrator.timestep == 0.0 and scalar[FASTEST] * scalar[DT] > limit:
-            scalar[DT] = limit / scalar[FASTEST]
+                    _take_note(state, law, drive, integrator)
+                    work = integrator.renew(state, law, work)
+        integrator.limit(state, law, drive, least, work)
+
+
+@jit
+def _take_note(state, law, drive, integrator):
+    """What follows from contacts that were made, broken or dropped."""
+    update_contact_rates(state, law, integrator)
+    drive.follow(state, True)
 
 
 def run(state, law, drive, box, integrator, until):

@@ -233,27 +233,35 @@ def _row(state, law, box, first):
     return [*map(float, row), float(total)]
 
 
+def _columns(table):
+    """Name -> numbers of the rows, (rows, ...), as they stand in `RECORDS`."""
+    values, column = {}, 0
+    for name, (dims, _, _) in RECORDS.items():
+        shape = tuple(SIZES[dim] for dim in dims)
+        width = int(np.prod(shape))
+        values[name] = table[:, column : column + width].reshape(len(table), *shape)
+        column += width
+    return values
+
+
 def _check_balance(rows, share):
-    first, last = rows[0], rows[-1]
-    scale = max(first[1] + first[2], sum(last[7:13]), abs(last[13]))
+    values = _columns(np.array([rows[0], rows[-1]]))
+    at_start = values["kinetic_translation"][0] + values["kinetic_spin"][0]
+    scale = max(at_start, values["dissipated"][1].sum(), abs(values["box_work"][1]))
     # what rounding leaves of energies that cancel
-    floor = 1e-9 * sum(abs(value) for value in last[3:7])
-    if not abs(last[14]) <= max(share * scale, floor):
+    floor = 1e-9 * np.abs(values["stored"][1]).sum()
+    time, residual = values["time"][1], values["residual"][1]
+    if not abs(residual) <= max(share * scale, floor):
         raise RuntimeError(
-            f"at {last[0]:.3g} s the balance of energy is off by {last[14]:.3g} J, {abs(last[14]) / scale:.1%} of what "
+            f"at {time:.3g} s the balance of energy is off by {residual:.3g} J, {abs(residual) / scale:.1%} of what "
             f"moved; at most {share:.1%} is allowed: take a smaller time step"
         )
 
 
 def _dataset(state, rows, law, box):
-    table = np.array(rows)
     variables = {}
-    column = 0
-    for name, (dims, units, meaning) in RECORDS.items():
-        width = int(np.prod([SIZES[dim] for dim in dims]))
-        values = table[:, column : column + width]
-        column += width
-        values = values.reshape(len(table), *(SIZES[dim] for dim in dims))
+    for name, values in _columns(np.array(rows)).items():
+        dims, units, meaning = RECORDS[name]
         if name.startswith("n_"):
             values = values.astype("i8")
         variables[name] = (("record", *dims), values, {"units": units, "long_name": meaning})

@@ -395,6 +395,10 @@ class JKR(NamedTuple):
     def damping_coefficient(self, contact, at):
         return contact[at + DAMPING]
 
+    def damping_now(self, contact, at):
+        s = contact[at + S]
+        return contact[at + DAMPING] * (1.0 if self.damping == CONSTANT else s * s)
+
     def contact_radius(self, contact, at):
         return contact[at + RADIUS_0] * contact[at + S] ** 2
 

@@ -1,0 +1,246 @@
+"""A grain spun up so slowly that only its equilibria matter: the limit of hours, in few steps.
+
+Real grains are spun up over some 1e16 of the steps that an integration can make. Whatever sways or vibrates has died
+out long before omega changes. So here the spin-up goes on only while the grain is quiet, and a drag in the turning
+frame brings it to rest. With `prescribed` it is omega that rises, with `torque` the angular momentum, from which omega
+follows: a grain that stretches then turns more slowly.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.base.jit import jit
+from ratd.base.parts import part
+from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
+from ratd.drives.rotating import (
+    ANGULAR_MOMENTUM, CENTRE_EVERY, EXCESS, FRAGMENTS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, STRESS_SAMPLES,
+    STRESS_SUM, TORQUE_WORK, UNREST, UNWIND, centre, drop_departed, own_inertia, turn_to_take_out,
+)  # fmt: skip
+from ratd.engine.fragments import label_fragments
+from ratd.engine.layout import (
+    DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STEPS, TORQUE_X, VX,
+    WX, X,
+)  # fmt: skip
+from ratd.observables.stress import total_stress
+
+TURN = 0.01
+"""Angle [rad] by which the frame turns in a step at most: the Coriolis force is explicit."""
+
+DRIVES = ("prescribed", "torque")
+
+_ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
+
+
+@part
+class QuasiStatic(NamedTuple):
+    """The drive; made by `quasi_static`.
+
+    Attributes
+    ----------
+    omega_1 : float
+        Angular velocity [rad/s] below which omega^2 rises evenly, and below which unrest counts against it.
+    pace : float
+        (d omega/dt)/omega^2 above omega_1 while the grain is at rest.
+    unrest : float
+        q_0: at this unrest the rise stops.
+    drag : float
+        c: velocities in the turning frame decay at the rate c omega.
+    torque : bool
+        Whether the angular momentum rises, not omega.
+    """
+
+    omega_1: float
+    pace: float
+    unrest: float
+    drag: float
+    torque: bool
+
+    def turning(self):
+        return False
+
+    def follow(self, state, changed):
+        state.drive[FRAGMENTS] = label_fragments(state)
+        state.drive[OWN_INERTIA] = own_inertia(state)
+        if changed:
+            # They were those of the old fragment.
+            state.drive[UNWIND] = 0.0
+            state.drive[EXCESS] = math.nan
+            state.drive[ANGULAR_MOMENTUM] = math.nan
+            centre(state)
+
+    def leave(self, state, law):
+        if state.drive[FRAGMENTS] < 2.0:
+            return 0
+        return drop_departed(state, law, np.int64(state.drive[FRAGMENTS]))
+
+    def sample(self, state, law):
+        state.drive[STRESS_SUM] += total_stress(state, law)
+        state.drive[STRESS_SAMPLES] += 1.0
+        if state.counter[STEPS] % CENTRE_EVERY == 0:
+            centre(state)
+
+    def load(self, state, kick):
+        add_frame_forces(state, state.drive[OMEGA])
+
+    def longest_step(self, state):
+        return TURN / state.drive[OMEGA] if state.drive[OMEGA] > 0.0 else math.inf
+
+    def move(self, state, box, kick, dt):
+        drive = state.drive
+        omega, unwind = drive[OMEGA], drive[UNWIND]
+        momentum, inertia, energy, fastest = kick_and_drift(
+            state, kick, dt, unwind, math.exp(-self.drag * omega * kick)
+        )
+        inertia += drive[OWN_INERTIA]
+        reference = max(omega, self.omega_1)
+        unrest = math.sqrt(2.0 * energy / inertia) / reference
+        rate = rise(self, omega) * max(0.0, 1.0 - (unrest / self.unrest) ** 2)
+        excess = momentum / inertia
+        drive[UNWIND] = turn_to_take_out(excess, drive[EXCESS], unwind)
+        drive[EXCESS] = excess
+        drive[UNREST] = unrest
+        if self.torque:
+            if drive[ANGULAR_MOMENTUM] != drive[ANGULAR_MOMENTUM]:
+                # a new fragment: it keeps what it has, and the frame follows
+                drive[ANGULAR_MOMENTUM] = inertia * omega + momentum
+            drive[ANGULAR_MOMENTUM] += inertia * rate * dt
+            drive[TORQUE_WORK] += rate * dt * (inertia * omega + momentum)
+            drive[OMEGA] = drive[ANGULAR_MOMENTUM] / inertia
+        else:
+            # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
+            drive[TORQUE_WORK] += (rate * dt + unwind) * (inertia * omega + momentum)
+            drive[OMEGA] = omega + rate * dt
+            drive[ANGULAR_MOMENTUM] = inertia * drive[OMEGA]
+        drive[GREATEST] = max(drive[GREATEST], drive[OMEGA])
+        state.scalar[FASTEST] = fastest if abs(momentum) < np.inf else math.nan
+
+
+def quasi_static(name, *, omega_1, pace=0.05, unrest=0.01, drag=1.0):
+    """Drive from the words that a user gives.
+
+    Parameters
+    ----------
+    name : {"prescribed", "torque"}
+        Whether omega or the angular momentum rises.
+    omega_1 : float
+        Angular velocity [rad/s] from which on the rise has a constant epsilon.
+    pace : float
+        That epsilon, (d omega/dt)/omega^2, while the grain is at rest.
+    unrest : float
+        q_0: unrest at which the rise stops. It is the number of the accuracy; the limit is q_0 -> 0.
+    drag : float
+        c: rate at which motion in the turning frame decays, over omega.
+
+    Returns
+    -------
+    QuasiStatic
+
+    Raises
+    ------
+    InputError
+    """
+    if name not in DRIVES:
+        raise InputError(f"drive is {name!r}; allowed are {', '.join(DRIVES)}.")
+    for word, value in (("pace", pace), ("unrest", unrest), ("drag", drag), ("omega_1", omega_1)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{word} is {value!r}; it must be a number above 0.")
+    return QuasiStatic(float(omega_1), float(pace), float(unrest), float(drag), name == "torque")
+
+
+@jit
+def rise(drive, omega):
+    """d omega/dt [rad/s2] of a grain at rest.
+
+    pace omega^2 above omega_1. Below, omega^2 and with it the centrifugal stress rise evenly; d omega/dt is
+    constant up to `SOFT_START` omega_1, so that it is finite at the start.
+    """
+    if omega > drive.omega_1:
+        return drive.pace * omega**2
+    return drive.pace * drive.omega_1**3 / max(omega, SOFT_START * drive.omega_1)
+
+
+@jit
+def add_frame_forces(state, omega):
+    """Add the forces of a frame that turns about z: centrifugal and Coriolis, and -I omega x w on the spins."""
+    monomer, force = state.monomer, state.force
+    centrifugal = vector4(omega * omega, omega * omega, 0.0, 0.0)
+    coriolis = vector4(2.0 * omega, -2.0 * omega, 0.0, 0.0)
+    turning = vector4(omega, -omega, 0.0, 0.0)
+    for k in range(state.counter[MONOMERS]):
+        r = np.uint64(k) * _ROW
+        q = np.uint64(k) * _FORCE_ROW
+        pull = add4(multiply4(centrifugal, load4(monomer, r + X)), multiply4(coriolis, swap4(load4(monomer, r + VX))))
+        store4(force, q + FORCE_X, add4(load4(force, q + FORCE_X), scale4(monomer[r + MASS], pull)))
+        turn = scale4(monomer[r + INERTIA], multiply4(turning, swap4(load4(monomer, r + WX))))
+        store4(force, q + TORQUE_X, add4(load4(force, q + TORQUE_X), turn))
+
+
+@jit
+def kick_and_drift(state, kick, dt, unwind, keep):
+    """Move all monomers by one step, and clear the forces.
+
+    Parameters
+    ----------
+    state : State
+        With all forces, those of the frame too.
+    kick, dt : float
+        Duration of the kick and of the move that follows [s].
+    unwind : float
+        Rigid rotation [rad/s] that keeps the angular momentum of the largest fragment in the frame at 0.
+    keep : float
+        Part of its velocities and spins that the drag leaves to the largest fragment.
+
+    Returns
+    -------
+    angular_momentum, inertia, energy : float
+        Of the largest fragment in the frame, after the kick: about z [kg m2 s-1], of its centres [kg m2], kinetic [J].
+    fastest : float
+        Greatest speed of any monomer [m/s].
+
+    Notes
+    -----
+    The outer torque, and the change of the frame's omega, are rigid rotations of the largest fragment; both
+    are part of `unwind`. On the others, which no torque drives, the Euler force is left out: they leave within a small
+    part of the time in which omega changes.
+    """
+    monomer, force = state.monomer, state.force
+    nothing = vector4(0.0, 0.0, 0.0, 0.0)
+    unwinding = vector4(-unwind, unwind, 0.0, 0.0)
+    spin_unwinding = vector4(0.0, 0.0, unwind, 0.0)
+    orbital, spinning, spread = nothing, nothing, nothing
+    energy = 0.0
+    fastest = 0.0
+    for k in range(state.counter[MONOMERS]):
+        r = np.uint64(k) * _ROW
+        q = np.uint64(k) * _FORCE_ROW
+        driven = monomer[r + DRIVEN]
+        left = 1.0 - driven * (1.0 - keep)
+        # lanes x, y, z; the fourth of the positions is the radius, of the spins DRIVEN, and both stay
+        braked = vector4(left, left, left, 1.0)
+        x = load4(monomer, r + X)
+        across = swap4(x)
+        v = add4(load4(monomer, r + VX), scale4(kick * monomer[r + INV_MASS], load4(force, q + FORCE_X)))
+        v = add4(multiply4(braked, v), scale4(driven, multiply4(unwinding, across)))
+        w = add4(load4(monomer, r + WX), scale4(kick * monomer[r + INV_INERTIA], load4(force, q + TORQUE_X)))
+        w = add4(multiply4(braked, w), scale4(driven, spin_unwinding))
+        store4(monomer, r + X, add4(x, scale4(dt, v)))
+        store4(monomer, r + VX, v)
+        store4(monomer, r + WX, w)
+        store4(force, q + FORCE_X, nothing)
+        store4(force, q + TORQUE_X, nothing)
+        m = driven * monomer[r + MASS]
+        weighed = scale4(m, across)
+        orbital = add4(orbital, multiply4(weighed, v))
+        spread = add4(spread, multiply4(weighed, across))
+        own = driven * monomer[r + INERTIA]
+        spinning = add4(spinning, scale4(own, w))
+        square = square4(v)
+        energy += 0.5 * (m * square + own * square4(w))
+        fastest = max(fastest, square)
+    backward, forward, _, _ = numbers4(orbital)
+    across_x, across_y, _, _ = numbers4(spread)
+    return forward - backward + numbers4(spinning)[2], across_x + across_y, energy, math.sqrt(fastest)

@@ -1,0 +1,380 @@
+"""A linearly implicit step: the contacts' stiffness is part of the mass matrix, so that it limits the step no longer.
+
+In place of M the step uses M' = M + theta dt^2 sum J^T K J + dt sum J^T C J over the contacts, with J the relative
+motion at a contact, K its stiffness and C its damping. Soft motion, which is what a slowly loaded aggregate does, has
+J near 0 and keeps its mass; stiff vibrations become slow enough for the step. Equilibria do not depend on M'. Rigid
+motion of a fragment has J = 0, so both momenta are kept.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.base.jit import jit
+from ratd.base.parts import part
+from ratd.engine.block_factor import BLOCK, PADDED, BlockFactor, factorise, find_block, order_blocks, solve
+from ratd.engine.contacts import contact_start, difference, get_image
+from ratd.engine.forces import contact_forces
+from ratd.engine.layout import (
+    CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    TIME, TORQUE_X, VX, WX,
+)  # fmt: skip
+from ratd.engine.leapfrog import SAMPLE_EVERY
+from ratd.laws.contact_fields import NCX, NCY, NCZ
+
+RUNG = math.sqrt(0.5)
+"""Steps are the longest one times a power of this, so that the matrix seldom changes."""
+CLIMB_AFTER = 8
+"""Steps on a rung before the next longer one is tried."""
+LOOK_EVERY = 16
+"""Steps between two looks at how far the contacts have turned since the matrix was made."""
+TURNED = 0.01
+"""Angle [rad] by which a contact may have turned."""
+SPHERE = 0.4
+"""Moment of inertia of a sphere over m a^2."""
+
+_ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
+
+
+class Work(NamedTuple):
+    """What the step keeps between two changes of contacts.
+
+    Attributes
+    ----------
+    factor : BlockFactor
+    block : (contacts,) int64
+        Number of the block of each contact, and whether its rows are those of i: twice the number plus 0 or 1.
+    normal : (contacts, 3) float64
+        Directions of the contacts for which the matrix was made.
+    x : (8 n,) float64
+        The right-hand side, and the solution.
+    made : (2,) float64
+        Step [s] for which the matrix was made; 0 when it has to be made anew.
+    count : (2,) int64
+        Steps since the last change of the step's length; matrices made.
+    """
+
+    factor: BlockFactor
+    block: np.ndarray
+    normal: np.ndarray
+    x: np.ndarray
+    made: np.ndarray
+    count: np.ndarray
+
+
+@part
+class SemiImplicit(NamedTuple):
+    """The integrator; made by `semi_implicit`.
+
+    Attributes
+    ----------
+    longest : float
+        The longest step [s].
+    displacement : float
+        No two monomers in contact move against each other by more than this in a step [m].
+    travel : float
+        No monomer moves by more than this in a step [m].
+    theta : float
+        Weight of the stiffness in the mass matrix.
+    calming : float
+        Part of the stiff motion that a step takes away.
+    first : float
+        f of the first step, times the shortest time of any contact.
+    implicit_damping : bool
+        Always false: the damping is part of the matrix.
+    """
+
+    longest: float
+    displacement: float
+    travel: float
+    theta: float
+    calming: float
+    first: float
+    implicit_damping: bool
+
+    def set_step(self, state, shortest):
+        # only at the start: later the step follows the motion
+        if state.scalar[DT] == 0.0:
+            state.scalar[DT] = rung_below(self.longest, self.first * shortest)
+
+    def prepare(self, state, law):
+        return _work(state, law)
+
+    def renew(self, state, law, work):
+        return _renewed(state, law, work)
+
+    def step(self, state, law, drive, box, scratch, work):
+        scalar, counter = state.scalar, state.counter
+        dt = scalar[DT]
+        kick = 0.5 * (scalar[DT_DRIFT] + dt)
+        ended = contact_forces(state, law, box, scratch, kick)
+        if counter[STEPS] % SAMPLE_EVERY == 0:
+            drive.sample(state, law)
+        drive.load(state, kick)
+        # the first step after a long one still begins with what that one has put in
+        held = max(dt, scalar[DT_DRIFT])
+        if work.made[0] != held or (counter[STEPS] % LOOK_EVERY == 0 and has_turned(state, law, work)):
+            make_matrix(state, law, box, self.theta, held, work)
+        weigh(state, self.calming / kick, work)
+        drive.move(state, box, kick, dt)
+        scalar[DT_DRIFT] = dt
+        scalar[TIME] += dt
+        counter[STEPS] += 1
+        return ended
+
+    def limit(self, state, law, drive, least, work):
+        scalar = state.scalar
+        speed = max(contact_speed(state, law) / self.displacement, scalar[FASTEST] / self.travel)
+        allowed = min(self.longest, drive.longest_step(state))
+        if speed > 0.0:
+            allowed = min(allowed, 1.0 / speed)
+        work.count[0] += 1
+        if allowed < scalar[DT]:
+            scalar[DT] = rung_below(self.longest, allowed)
+            work.count[0] = 0
+        elif work.count[0] >= CLIMB_AFTER and scalar[DT] / RUNG <= allowed * 1.000001:
+            scalar[DT] = rung_below(self.longest, scalar[DT] / RUNG * 1.000001)
+            work.count[0] = 0
+
+
+@jit
+def rung_below(longest, step):
+    """The longest of the allowed lengths of a step that is not above `step` [s]."""
+    rungs = max(0.0, math.ceil(math.log(step / longest) / math.log(RUNG) - 1e-9))
+    return longest * RUNG**rungs
+
+
+@jit
+def _work(state, law):
+    n, contacts = state.counter[MONOMERS], state.counter[CONTACTS]
+    factor = order_blocks(n, state.pair_i, state.pair_j, contacts)
+    block = np.empty(contacts, dtype=np.int64)
+    _find_blocks(state, factor, block)
+    return Work(factor, block, np.empty((contacts, 3)), np.zeros(PADDED * n), np.zeros(2), np.zeros(2, dtype=np.int64))
+
+
+@jit
+def _find_blocks(state, factor, block):
+    """Find the block of each contact; False when one has none."""
+    for k in range(block.shape[0]):
+        at, turned = find_block(factor, np.int64(state.pair_i[k]), np.int64(state.pair_j[k]))
+        if at < 0:
+            return False
+        block[k] = 2 * at + turned
+    return True
+
+
+@jit
+def _renewed(state, law, work):
+    """The same after contacts have changed; the order of elimination stays where the pattern has room for them."""
+    contacts = state.counter[CONTACTS]
+    if work.factor.place.shape[0] == state.counter[MONOMERS]:
+        block = np.empty(contacts, dtype=np.int64)
+        if _find_blocks(state, work.factor, block):
+            work.made[0] = 0.0
+            return Work(work.factor, block, np.empty((contacts, 3)), work.x, work.made, work.count)
+    fresh = _work(state, law)
+    fresh.count[:] = work.count
+    return fresh
+
+
+@jit
+def has_turned(state, law, work):
+    """Whether a contact has turned by more than `TURNED` since the matrix was made."""
+    for k in range(state.counter[CONTACTS]):
+        at = contact_start(law, k)
+        dx = state.contact[at + NCX] - work.normal[k, 0]
+        dy = state.contact[at + NCY] - work.normal[k, 1]
+        dz = state.contact[at + NCZ] - work.normal[k, 2]
+        if dx * dx + dy * dy + dz * dz > TURNED**2:
+            return True
+    return False
+
+
+@jit
+def make_matrix(state, law, box, theta, dt, work):
+    """Make M' and factorise it.
+
+    Parameters
+    ----------
+    state : State
+    law, box : parts
+    theta : float
+    dt : float
+        Step [s].
+    work : Work
+
+    Notes
+    -----
+    The unknowns of a monomer are v and a w, velocity and spin times radius, so that all blocks are masses. With n from
+    j to i and the arms a_i d/(a_i + a_j), where d is the distance of the centres, the contact points recede by
+    g = v_i - v_j + n x (arm_i w_i + arm_j w_j), which is 0 for a rigid motion.
+    """
+    factor = work.factor
+    diagonal, lower = factor.diagonal, factor.lower
+    diagonal[:] = 0.0
+    lower[:] = 0.0
+    for i in range(state.counter[MONOMERS]):
+        m = state.monomer[np.uint64(i) * _ROW + MASS]
+        at = BLOCK * factor.place[i]
+        for c in range(3):
+            diagonal[at + (PADDED + 1) * c] = m
+            diagonal[at + (PADDED + 1) * (c + 3)] = SPHERE * m
+    edges = box.edges(state.scalar)
+    weight = theta * dt * dt
+    block = np.empty((6, 6))
+    for k in range(state.counter[CONTACTS]):
+        at = contact_start(law, k)
+        i, j = np.int64(state.pair_i[k]), np.int64(state.pair_j[k])
+        n = (state.contact[at + NCX], state.contact[at + NCY], state.contact[at + NCZ])
+        work.normal[k, 0], work.normal[k, 1], work.normal[k, 2] = n
+        a_i = state.monomer[np.uint64(i) * _ROW + RADIUS]
+        a_j = state.monomer[np.uint64(j) * _ROW + RADIUS]
+        arm = difference(state, edges, i, j, get_image(state, k))[3] / (a_i + a_j)
+        k_n, k_s, k_r, k_t = law.stiffness(state.contact, at)
+        k_n = weight * k_n + dt * law.damping_now(state.contact, at)
+        k_s, k_r, k_t = weight * k_s, weight * k_r, weight * k_t
+        _blocks(block, n, k_n, k_s, k_r / (a_i * a_i), k_t / (a_i * a_i), 1.0, 1.0, arm)
+        _add_block(diagonal, BLOCK * factor.place[i], block, False)
+        _blocks(block, n, k_n, k_s, k_r / (a_j * a_j), k_t / (a_j * a_j), -1.0, -1.0, arm)
+        _add_block(diagonal, BLOCK * factor.place[j], block, False)
+        _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm)
+        _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
+    if not factorise(factor):
+        state.scalar[FASTEST] = math.nan
+    work.made[0] = dt
+    work.count[1] += 1
+
+
+@jit(forceinline=True)
+def _blocks(block, n, k_n, k_s, k_r, k_t, sign_i, sign_j, arm):
+    """J_i^T K J_j of one contact, rows of i, with J = (sign, arm [n x]) and the stiffness of the spins added."""
+    for r in range(3):
+        for c in range(3):
+            along = n[r] * n[c]
+            across = (1.0 if r == c else 0.0) - along
+            block[r, c] = sign_i * sign_j * (k_n * along + k_s * across)
+            block[r + 3, c + 3] = (arm * arm * k_s + k_r) * across + k_t * along
+    # [n x]
+    s = arm * k_s
+    for r in range(3):
+        c, d = (r + 1) % 3, (r + 2) % 3
+        block[r, 3 + r] = block[3 + r, r] = 0.0
+        block[r, 3 + c] = -sign_i * s * n[d]
+        block[r, 3 + d] = sign_i * s * n[c]
+        # its transpose
+        block[3 + c, r] = -sign_j * s * n[d]
+        block[3 + d, r] = sign_j * s * n[c]
+
+
+@jit(forceinline=True)
+def _add_block(target, at, block, transposed):
+    """Add a block to one that is kept column by column."""
+    for r in range(6):
+        for c in range(6):
+            if transposed:
+                target[at + PADDED * r + c] += block[r, c]
+            else:
+                target[at + PADDED * c + r] += block[r, c]
+
+
+@jit
+def weigh(state, rate, work):
+    """Turn the forces F into M (M'^-1 (F + rate M v) - rate v), which moves monomers of their true mass as M' says.
+
+    The terms with the rate [1/s] take stiff motion away and leave soft motion, for which M'^-1 M v is v.
+    """
+    monomer, force, x = state.monomer, state.force, work.x
+    place = work.factor.place
+    n = state.counter[MONOMERS]
+    for k in range(n):
+        q = np.uint64(k) * _FORCE_ROW
+        to = PADDED * place[k]
+        r = np.uint64(k) * _ROW
+        radius = monomer[r + RADIUS]
+        inv = 1.0 / radius
+        pull = rate * monomer[r + MASS]
+        turn = rate * SPHERE * monomer[r + MASS] * radius
+        for axis in range(3):
+            a = np.uint64(axis)
+            x[to + axis] = force[q + FORCE_X + a] + pull * monomer[r + VX + a]
+            x[to + 3 + axis] = force[q + TORQUE_X + a] * inv + turn * monomer[r + WX + a]
+    solve(work.factor, x)
+    for k in range(n):
+        r = np.uint64(k) * _ROW
+        q = np.uint64(k) * _FORCE_ROW
+        to = PADDED * place[k]
+        m = monomer[r + MASS]
+        radius = monomer[r + RADIUS]
+        spin = SPHERE * m * radius
+        for axis in range(3):
+            a = np.uint64(axis)
+            force[q + FORCE_X + a] = m * (x[to + axis] - rate * monomer[r + VX + a])
+            force[q + TORQUE_X + a] = spin * (x[to + 3 + axis] - rate * radius * monomer[r + WX + a])
+
+
+@jit
+def contact_speed(state, law):
+    """Greatest speed [m/s] at which two monomers in contact move or turn against each other, times that lever."""
+    monomer, contact = state.monomer, state.contact
+    greatest = 0.0
+    for k in range(state.counter[CONTACTS]):
+        at = contact_start(law, k)
+        i = state.pair_i[k] * _ROW
+        j = state.pair_j[k] * _ROW
+        a_i, a_j = monomer[i + RADIUS], monomer[j + RADIUS]
+        nx, ny, nz = contact[at + NCX], contact[at + NCY], contact[at + NCZ]
+        one = np.uint64(1)
+        two = np.uint64(2)
+        wx = a_i * monomer[i + WX] + a_j * monomer[j + WX]
+        wy = a_i * monomer[i + WX + one] + a_j * monomer[j + WX + one]
+        wz = a_i * monomer[i + WX + two] + a_j * monomer[j + WX + two]
+        gx = monomer[i + VX] - monomer[j + VX] + ny * wz - nz * wy
+        gy = monomer[i + VX + one] - monomer[j + VX + one] + nz * wx - nx * wz
+        gz = monomer[i + VX + two] - monomer[j + VX + two] + nx * wy - ny * wx
+        r = a_i * a_j / (a_i + a_j)
+        tx = monomer[i + WX] - monomer[j + WX]
+        ty = monomer[i + WX + one] - monomer[j + WX + one]
+        tz = monomer[i + WX + two] - monomer[j + WX + two]
+        greatest = max(greatest, gx * gx + gy * gy + gz * gz, r * r * (tx * tx + ty * ty + tz * tz))
+    return math.sqrt(greatest)
+
+
+def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calming=0.0, first=0.125):
+    """The linearly implicit integrator.
+
+    Parameters
+    ----------
+    longest : float
+        The longest step [s].
+    displacement, travel : float
+        By how much two monomers in contact may move against each other, and one may move at all, in a step [m].
+    theta : float
+        Weight of the stiffness in the mass matrix; at least 1/4, below which long steps are unstable.
+    calming : float
+        Part of the stiff motion, between 0 and 1, that a step takes away. It is for aggregates whose equilibria alone
+        matter, and lets them come to rest.
+    first : float
+        f of the first step.
+
+    Returns
+    -------
+    SemiImplicit
+
+    Raises
+    ------
+    InputError
+    """
+    numbers = {"longest": longest, "displacement": displacement, "travel": travel, "first": first}
+    for name, value in numbers.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(f"{name} is {value!r}; it must be a number above 0.")
+    if not 0.25 <= theta <= 10.0:
+        raise InputError(f"theta is {theta!r}; it must be between 0.25 and 10.")
+    if not 0.0 <= calming < 1.0:
+        raise InputError(f"calming is {calming!r}; it must be between 0 and 1.")
+    options = (longest, displacement, travel, theta, calming, first)
+    return SemiImplicit(*map(float, options), False)
