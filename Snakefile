@@ -18,6 +18,9 @@ pathvars:
     results=results_folder(config),
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/aggregates.smk"
 include: "workflow/rules/spin_up.smk"
 include: "workflow/rules/figures.smk"

@@ -10,6 +10,7 @@ import time
 import pytest
 import yaml
 
+import browser
 from ratd.experiments.spin_up import run_files
 from ratd.pipeline import io
 from ratd.pipeline.partial import partial_folder
@@ -281,11 +282,35 @@ def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
     assert (copy_of.folder / name).read_bytes() == content
 
 
-def test_report_is_one_page_with_captions(finished, tmp_path):
-    done = finished.run("--report", str(tmp_path / "report.html"))
+@pytest.fixture(scope="module")
+def report(finished, tmp_path_factory):
+    """The report of a finished pipeline."""
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    done = finished.run("--report", str(path))
     assert done.returncode == 0, done.stdout
-    page = (tmp_path / "report.html").read_text()
+    return path
+
+
+def test_report_is_one_page_with_captions(report):
+    page = report.read_text()
     for number in (2, 4, 5, 6, 7, 8, 9):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page
+
+
+def test_report_in_a_browser(report):
+    """An opening text, all tables, the figures in the order of their numbers."""
+
+    def rows(page, category):
+        page.goto(report.resolve().as_uri())
+        page.get_by_text(category, exact=True).first.click()
+        page.wait_for_selector("tbody tr")
+        return [row.split("\t")[0].strip() for row in page.locator("tbody tr").all_inner_texts()]
+
+    with browser.opened(report) as page:
+        page.wait_for_selector("text=Dust aggregates, every monomer integrated.")
+        tables = ["Calibration of the drive literal", "Runs of figure 9, drive prescribed", "Table 1", "Table 2"]
+        assert rows(page, "Tables") == [*tables, "Table 3, drive prescribed"]
+        assert rows(page, "Figures") == ["1", "2", "4", "5", "6", "7", "8", "9", "10", "study"]
+        assert rows(page, "Interactive") == ["one grain coming apart"]

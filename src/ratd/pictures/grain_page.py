@@ -83,7 +83,8 @@ def grain_page(run, omega_disr, drive=None):
     )
     page = plot.get_snapshot(additional_js_code=SCRIPT.read_text(encoding="utf-8"))
     # k3d's title holds the time, and its page has no room for controls of our own
-    page = re.sub("<title>.*?</title>", lambda _: f"<title>{escape(title)}</title>", page, count=1, flags=re.DOTALL)
+    head = f'<title>{escape(title)}</title>\n    <meta name="viewport" content="width=device-width, initial-scale=1">'
+    page = re.sub("<title>.*?</title>", lambda _: head, page, count=1, flags=re.DOTALL)
     canvas = '<div id="canvasTarget"></div>'
     return page.replace(canvas, panel + canvas, 1)
 
