@@ -24,7 +24,7 @@ rule spin_up:
     conda:
         "../envs/ratd.yaml"
     resources:
-        runtime=10080,
+        runtime=lambda w, attempt: PLAN.spin_up_minutes(w.size, w.seeds, attempt),
     params:
         task=task("run", "ratd.experiments.spin_up.spin:block", "spinup"),
         settings=lambda w: PLAN.spin_up(w.drive, w.material, w.type, w.size, w.seeds),

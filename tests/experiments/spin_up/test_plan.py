@@ -488,3 +488,9 @@ def test_what_is_wrong_with_a_material_is_named_with_the_file(tmp_path, text, sa
         with_changes(materials_file(tmp_path, text))
     assert said in str(error.value) and "materials.yaml" in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_time_limits_grow_with_size_grains_and_tries():
+    minutes = load(*DEFAULT).spin_up_minutes
+    assert 20 * 10 < minutes("550", "0-9") < 2 * 1440
+    assert minutes("50", "0-29") < 60 < minutes("350", "0-9") < minutes("550", "0-9") < minutes("550", "0-9", attempt=2)
