@@ -14,10 +14,10 @@ from ratd.validation.plan import Checks
 
 min_version("9.27")
 
-jobs.release_stale_locks()
-
-# Told again at the very end, below all that Snakemake says of it.
+# Not so in a job on a cluster, which is a Snakemake of its own and may outlive the one that sent it.
 if workflow.is_main_process:
+    jobs.release_stale_locks()
+    # told again at the very end, below all that Snakemake says of it
     first_error.begin()
     atexit.register(lambda: print(first_error.kept(), end="", file=sys.stderr))
 
