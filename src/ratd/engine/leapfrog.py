@@ -37,6 +37,9 @@ class Leapfrog(NamedTuple):
     timestep: float
     implicit_damping: bool
 
+    def with_smaller_steps(self, part):
+        return self._replace(timestep_factor=part * self.timestep_factor, timestep=part * self.timestep)
+
     def set_step(self, state, shortest):
         if self.timestep > 0.0:
             state.scalar[DT] = self.timestep

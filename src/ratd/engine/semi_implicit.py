@@ -95,6 +95,11 @@ class SemiImplicit(NamedTuple):
     first: float
     implicit_damping: bool
 
+    def with_smaller_steps(self, part):
+        return self._replace(
+            longest=part * self.longest, displacement=part * self.displacement, travel=part * self.travel
+        )
+
     def set_step(self, state, shortest):
         # only at the start: later the step follows the motion
         if state.scalar[DT] == 0.0:

@@ -37,6 +37,7 @@ HOMES = {
     **{
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (
+            "quasi_static",
             "convergence",
             "pull_off",
             "damping",

@@ -12,8 +12,9 @@ from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.how import FIRST_LOSS
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.run import FIRST_LOSS, spin_up
+from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")

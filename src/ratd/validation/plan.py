@@ -71,6 +71,7 @@ class Checks:
 
     def _pieces(self, check, own):
         return {
+            "quasi_static": self._quasi_static,
             "convergence": self._convergence,
             "pull_off": self._pull_off,
             "damping": self._damping,
@@ -84,6 +85,18 @@ class Checks:
             "forces": self._forces,
             "lammps": self._lammps,
         }[check](own)
+
+    def _quasi_static(self, own):
+        pieces = {}
+        for group in own:
+            shared = {
+                key: value for key, value in group.items() if key not in ("materials", "types", "sizes_nm", "seeds")
+            }
+            for material, kind, size in product(group["materials"], group["types"], group["sizes_nm"]):
+                for seed in range(group["seeds"]):
+                    name = f"{group['name']}_{material}_{kind}_{size}nm_{seed}"
+                    pieces[name] = shared | {"material": material, "type": kind, "a_eff": size * NM, "seed": seed}
+        return pieces
 
     def _convergence(self, own):
         production = {"production_timestep_factor": self.config["production"]["timestep_factor"]}
@@ -125,7 +138,7 @@ class Checks:
     def _theory(self, own):
         shared = {"material": own["material"], "seeds": own["seeds"]}
         return {
-            f"{kind}_{size}nm": shared | self._production(kind) | {"type": kind, "a_eff": size * NM}
+            f"{kind}_{size}nm": shared | {"type": kind, "a_eff": size * NM}
             for kind, size in product(own["types"], own["sizes_nm"])
         }
 

@@ -12,7 +12,6 @@ from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
 COLUMNS = {
     **GRAIN_COLUMNS,
-    "epsilon": ("1", "(d omega/dt)/omega^2"),
     "n_contacts": ("1", "contacts"),
     "porosity": ("1", "porosity"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
@@ -28,7 +27,7 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, type, a_eff [m], seeds (number), epsilon, timestep_factor.
+        material, type, a_eff [m], seeds (number).
     progress : callable, optional
         Called with a sentence after each grain.
 
@@ -40,13 +39,12 @@ def compute(settings, progress=None):
     rows = []
     for seed in range(settings["seeds"]):
         grain = grow(settings["type"], settings["a_eff"], settings["material"], seed)
-        run = spin_up(grain, epsilon=settings["epsilon"], timestep_factor=settings["timestep_factor"])
+        run = spin_up(grain)
         marks = disruption(run)
         solid = not math.isfinite(grain.shape.porosity) or grain.shape.porosity <= 0.0
         rows.append(
             dict(
                 **grain_values(grain),
-                epsilon=settings["epsilon"],
                 n_contacts=grain.n_contacts,
                 porosity=grain.shape.porosity,
                 cut_bound=cut_bound(grain),

@@ -21,6 +21,7 @@ RUN_VALUES = {
     "a_eff": Variable((ROW,), "f8", "m", "effective radius of the grain"),
     "steps": Variable((ROW,), "i8", "1", "number of time steps"),
     "timestep": Variable((ROW,), "f8", "s", "first time step"),
+    "smaller_steps": Variable((ROW,), "i8", "1", "parts of the run that were made again with smaller steps"),
     "end_reason": Variable((ROW,), "i1", "", "why the run ended", flags=END_REASONS),
     "angular_acceleration": Variable((ROW,), "f8", "rad s-2", "angular acceleration at the start"),
     "cut_bound": Variable((ROW,), "f8", "rad s-1", "angular velocity above which no cut of the grain can hold"),
@@ -34,7 +35,10 @@ RUN_VALUES = {
 }
 """Numbers of a run, one a grain: attributes of the dataset of a run, variables of the file of a block."""
 
-RUN_SETTINGS = ("material", "type", "drive", "spin_up_law", "epsilon", "coriolis", "damping", "timestep_factor")
+RUN_SETTINGS = (
+    "material", "type", "drive", "spin_up_law", "unrest", "pace", "drag", "epsilon", "integrator", "displacement",
+    "coriolis", "damping", "timestep_factor",
+)  # fmt: skip
 """Attributes of the dataset of a run that are the same for all grains of a block: global attributes of its file."""
 
 _SPINUP_RAGGED = ("record", "fragment", "snapshot", "monomer", "snapshot_monomer")

@@ -5,7 +5,7 @@ import time
 import numpy as np
 import xarray as xr
 
-from ratd.drives.rotating import OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK
+from ratd.drives.rotating import ANGULAR_MOMENTUM, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK
 from ratd.engine.fragments import note_lost
 from ratd.engine.layout import (
     DT, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, STEPS, TIME, X,
@@ -20,7 +20,7 @@ PROGRESS_INTERVAL = 2.0
 
 # name -> units, meaning, type; in the order of the columns of the records
 RECORDS = {
-    "omega": ("rad s-1", "angular velocity", "f8"),
+    "omega": ("rad s-1", "greatest angular velocity so far", "f8"),
     "time": ("s", "time since the start of the spin-up", "f8"),
     "mass": ("kg", "mass of the largest fragment", "f8"),
     "n_monomers": ("1", "number of monomers of the largest fragment", "i4"),
@@ -39,6 +39,9 @@ RECORDS = {
     "kinetic_energy": ("J", "kinetic energy of the largest fragment in the inertial frame", "f8"),
     "potential_energy": ("J", "potential energy of the contacts of the largest fragment", "f8"),
     "n_fragments_lost": ("1", "number of fragments lost so far", "i4"),
+    "frame_omega": ("rad s-1", "angular velocity, which falls where a torque turns a grain that stretches", "f8"),
+    "angular_momentum": ("kg m2 s-1", "angular momentum of the largest fragment about the axis", "f8"),
+    "steps": ("1", "time steps so far", "i8"),
 }  # fmt: skip
 FRAGMENTS = {
     "fragment_mass": ("kg", "mass of a fragment that left"),
@@ -75,11 +78,12 @@ def record(state, law, density):
     damping, sliding, rolling, twisting, made, broken = dissipated(state, law).tolist()
     counter = state.counter
     return [
-        float(drive[OMEGA]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
+        float(drive[GREATEST]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
         float(counter[LARGEST_CONTACTS]), stress, a, b, c, porosity,
         sliding, rolling, twisting, damping, made + broken,
         float(drive[TORQUE_WORK]), sum(kinetic(state, drive[OMEGA], True)), stored(state, law, True).sum(),
-        float(counter[FRAGMENTS_LOST]), float(scalar[DT]),
+        float(counter[FRAGMENTS_LOST]), float(drive[OMEGA]), float(drive[ANGULAR_MOMENTUM]), float(counter[STEPS]),
+        float(scalar[DT]),
     ]  # fmt: skip
 
 
@@ -92,7 +96,7 @@ def snapshot(state, law):
     table[kept, :3] = monomer_rows(state)[:, X : X + 3]
     table[kept, 3] = state.fragment[: state.counter[MONOMERS]]
     table[kept, 4] = extreme_normal_force(state, law)
-    return np.concatenate([[state.drive[OMEGA]], table.ravel()])
+    return np.concatenate([[state.drive[GREATEST]], table.ravel()])
 
 
 def dataset(state, rows, snapshots, grain):
@@ -126,7 +130,7 @@ class Watch:
     def __init__(self, run, progress):
         self.omega_1, self.mass, self.progress = run.motion.omega_1, run.rows[0][2], progress
         self.start = self.last = time.monotonic()
-        self.begun = self._done(run.state.drive[OMEGA])
+        self.begun = self._done(run.state.drive[GREATEST])
 
     def _done(self, omega):
         """A number that grows evenly with the steps under the constant-epsilon law: 1 at omega_1, 3 at the end."""

@@ -1,47 +1,48 @@
 """Spin-up of one grain until it is disrupted: relaxation at rest, then records at fixed omega, with checkpoints."""
 
+import math
 import time
 
 import numpy as np
 
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
-from ratd.drives.rotating import OMEGA_RAT, SPIN_UP_LAWS, rotating
+from ratd.drives.rotating import OMEGA_RAT
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
-from ratd.engine.layout import STEPS
-from ratd.engine.leapfrog import leapfrog
+from ratd.engine.layout import DT, STEPS
+from ratd.engine.state import copied
 from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.how import DRAG, TIMESTEP_FACTOR, UNREST, how_to_turn
 from ratd.experiments.spin_up.records import RECORDS, Watch, dataset, edge_of_record, let_go, record, snapshot
 from ratd.geometry.box import open_space
 from ratd.laws.jkr_with_springs import jkr
 
 __all__ = ["spin_up"]
 
-EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.005}
-TIMESTEP_FACTOR = 0.125
-"""What a spin-up takes when it is not told otherwise. Grains up to 300 nm are then within about 3 % of the limit of a
-slow spin-up and a short step, larger BAM1 grains farther above it (docs/validation.md). A grain of no known type takes
-the least epsilon."""
-FIRST_LOSS = 0.7
-"""Part of the cut bound from which on epsilon is constant. BA grains mostly lose their first monomers above it, BAM
-grains often below, where the spin-up is faster than epsilon (docs/model/drives.md, The law omega(t))."""
 CHECKPOINT_INTERVAL = 60.0
 """Wall time [s] between two checkpoints."""
+SMALLER = 0.25
+"""A part of a run that fails is made again with steps so much smaller, `TRIES` times at most."""
+TRIES = 3
 
 
 def spin_up(
     grain,
     *,
     drive="prescribed",
+    pace=None,
+    unrest=UNREST,
+    drag=DRAG,
     epsilon=None,
     angular_acceleration=None,
     coriolis=None,
     timestep_factor=TIMESTEP_FACTOR,
     damping="implicit",
+    integrator=None,
     law=None,
     max_steps=None,
     records=300,
@@ -54,19 +55,28 @@ def spin_up(
     Parameters
     ----------
     grain : ratd.Grain
-    drive : {"prescribed", "literal"}
-        The consistent model with the outer torque, or the equations as printed (see `ratd.drives.rotating`).
+    drive : {"prescribed", "torque", "literal"}
+        What rises: omega, or the angular momentum, from which omega follows (`ratd.drives.quasi_static`); or the
+        equations as printed (`ratd.drives.rotating`).
+    pace : float, optional
+        (d omega/dt)/omega^2 while the grain is at rest. The smaller, the nearer to the limit of hours; `PACE` of
+        `ratd.experiments.spin_up.how` when not given.
+    unrest, drag : float
+        q_0, the part of its rotation that the motion of the grain exceeds while the spin-up waits; decay of motion in
+        the turning frame over omega.
     epsilon : float, optional
-        Spin up with this constant (d omega/dt)/omega^2 above omega_1, `FIRST_LOSS` times the cut bound, and with an
-        even rise of omega^2 below it. `EPSILON` of its type when neither this nor `angular_acceleration` is given.
+        Do not wait: spin up with this constant (d omega/dt)/omega^2 above omega_1, `FIRST_LOSS` times the cut bound,
+        and with an even rise of omega^2 below it. For `literal` that of its type when nothing is given.
     angular_acceleration : float, optional
-        Spin up after Eq. 24 instead, with this initial d omega/dt [rad/s2].
+        Do not wait: spin up after Eq. 24, with this initial d omega/dt [rad/s2].
     coriolis : {"exact", "explicit"}, optional
         Treatment of the Coriolis force; by default exact for `prescribed`, explicit for `literal`.
     timestep_factor : float
-        f of dt = f min(t_dis, t_vel), Eq. 31.
+        f of dt = f min(t_dis, t_vel), Eq. 31, of the relaxation and of spin-ups that do not wait.
     damping : {"implicit", "explicit"}
-        Treatment of the viscoelastic damping. Explicit is stable for small f only.
+        Treatment of the viscoelastic damping in these. Explicit is stable for small f only.
+    integrator : part, optional
+        `ratd.engine.semi_implicit.semi_implicit` with `STEP` for spin-ups that wait, leapfrog for the others.
     law : part, optional
         Contact law, `ratd.laws.jkr` with its defaults when not given.
     max_steps : int, optional
@@ -96,10 +106,13 @@ def spin_up(
     InputError
         If an argument is not usable.
     """
-    run = Run(
-        grain, drive, epsilon, angular_acceleration, coriolis, timestep_factor, damping, law, max_steps, records,
-        snapshot_every,
+    bound = cut_bound(grain) if isinstance(grain, Grain) else math.nan
+    how = how_to_turn(
+        getattr(grain, "type", None), bound, drive=drive, pace=pace, unrest=unrest, drag=drag, epsilon=epsilon,
+        angular_acceleration=angular_acceleration, coriolis=coriolis, timestep_factor=timestep_factor, damping=damping,
+        integrator=integrator,
     )  # fmt: skip
+    run = Run(grain, how, bound, law, max_steps, records, snapshot_every)
     if not run.load(checkpoint):
         run.begin(relax(grain, law=run.law, timestep_factor=timestep_factor))
     watch = Watch(run, progress)
@@ -118,48 +131,35 @@ class Run:
 
     Parameters
     ----------
-    grain, drive, epsilon, angular_acceleration, coriolis, timestep_factor, damping, max_steps, records, snapshot_every
+    grain : ratd.Grain
+    how : ratd.experiments.spin_up.how.How
+    bound : float
+        The cut bound [rad/s].
+    law, max_steps, records, snapshot_every
         As for `spin_up`.
 
     Attributes
     ----------
-    motion : ratd.drives.rotating.Drive
-    bound : float
-        The cut bound [rad/s].
-    implicit : bool
-        Whether the damping is treated implicitly.
     steps_goal : int
         Number of steps after which the run ends.
-    fewest : int
-        The run ends when the largest fragment has no more contacts than this.
     state : ratd.engine.state.State
     rows : list of list of float
-        The records (see `_record`).
+        The records (see `record`).
     snapshots : list of array
-        See `_snapshot`.
+        See `snapshot`.
+    smaller_steps : int
+        How often a part of the run had to be made again with smaller steps.
     reason : str or None
         Why the run has ended, None while it goes on.
     """
 
-    def __init__(
-        self, grain, drive="prescribed", epsilon=None, angular_acceleration=None, coriolis=None,
-        timestep_factor=TIMESTEP_FACTOR, damping="implicit", law=None, max_steps=None, records=300, snapshot_every=0,
-    ):  # fmt: skip
+    def __init__(self, grain, how, bound, law=None, max_steps=None, records=300, snapshot_every=0):
         _check(grain, max_steps, records, snapshot_every)
+        self.grain, self.how, self.bound = grain, how, bound
         self.law = jkr() if law is None else law
-        self.integrator = leapfrog(timestep_factor=timestep_factor, damping=damping)
-        if epsilon is None and angular_acceleration is None:
-            epsilon = EPSILON.get(grain.type, min(EPSILON.values()))
-        self.grain, self.drive, self.epsilon, self.damping = grain, drive, epsilon, damping
-        self.timestep_factor, self.records, self.snapshot_every = timestep_factor, records, snapshot_every
-        self.bound = cut_bound(grain)
-        self.motion = rotating(
-            drive,
-            omega_1=FIRST_LOSS * self.bound,
-            epsilon=epsilon,
-            angular_acceleration=angular_acceleration,
-            coriolis=coriolis,
-        )
+        self.motion, self.integrator = how.motion, how.integrator
+        self.records, self.snapshot_every = records, snapshot_every
+        self.smaller_steps = 0
         self.steps_goal = np.iinfo(np.int64).max if max_steps is None else int(max_steps)
         self.reason = None
 
@@ -172,20 +172,45 @@ class Run:
 
     def begin(self, state):
         """Start from a relaxed state."""
-        update_contact_rates(state, self.law, self.integrator)
+        self._start(state, [], [])
+        self._choose_step(self.integrator)
         self._start(state, [record(state, self.law, self.grain.material.density)], [])
         if self.snapshot_every:
             self.snapshots.append(snapshot(state, self.law))
 
     def advance(self):
-        """Go on to the next record."""
-        goal = until(steps=self.steps_goal, clock=self.edge(), fewest_contacts=self.fewest)
-        self.state, code = go_on(self.state, self.law, self.motion, open_space(), self.integrator, goal)
+        """Go on to the next record; what fails is made again with smaller steps."""
+        before = copied(self.state)
+        integrator, tries = self.integrator, 0
+        while True:
+            goal = until(steps=self.steps_goal, clock=self.edge(), fewest_contacts=self.fewest)
+            try:
+                self.state, code = go_on(self.state, self.law, self.motion, open_space(), integrator, goal)
+                break
+            except RuntimeError:
+                if tries == TRIES:
+                    raise
+            tries += 1
+            integrator = integrator.with_smaller_steps(SMALLER)
+            self.state = copied(before)
+            self.smaller_steps += 1
+            self._choose_step(integrator)
+        if integrator != self.integrator:
+            self._choose_step(self.integrator)
         self.note(code)
 
     def _start(self, state, rows, snapshots):
         self.state, self.rows, self.snapshots = state, rows, snapshots
-        self.fewest = 1 if rows[0][4] > 1 else 0
+
+    def _choose_step(self, integrator):
+        """Let an integrator choose the next step as if it were the first."""
+        self.state.scalar[DT] = 0.0
+        update_contact_rates(self.state, self.law, integrator)
+
+    @property
+    def fewest(self):
+        """The run ends when the largest fragment has no more contacts than this."""
+        return 1 if self.rows[0][4] > 1 else 0
 
     def edge(self, ahead=0):
         """Angular velocity [rad/s] of the next record, or of the one that comes `ahead` records after it."""
@@ -212,7 +237,8 @@ class Run:
 
     def save(self, path):
         """Keep the run in a file, from which `load` goes on."""
-        checkpoints.save(path, self.key, self.state, rows=self.rows, snapshots=self.snapshots)
+        tables = {"rows": self.rows, "snapshots": self.snapshots, "smaller_steps": [self.smaller_steps]}
+        checkpoints.save(path, self.key, self.state, **tables)
 
     def load(self, path):
         """Go on from a file; False when there is none, or it is damaged or of another run."""
@@ -220,30 +246,29 @@ class Run:
         if loaded is not None:
             state, tables = loaded
             self._start(state, tables["rows"].tolist(), list(tables["snapshots"]))
+            self.smaller_steps = int(tables["smaller_steps"][0])
         return loaded is not None
 
     def dataset(self):
         """The finished run, see `spin_up`."""
-        first, motion, grain = self.rows[0], self.motion, self.grain
+        first, grain = self.rows[0], self.grain
         initial = dict(zip(RECORDS, first[:-1], strict=True))
         run = dataset(self.state, self.rows, self.snapshots, grain)
-        run.attrs = {
-            "drive": self.drive,
-            "spin_up_law": SPIN_UP_LAWS[motion.law],
-            "epsilon": np.nan if self.epsilon is None else float(self.epsilon),
-            "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2,
-            "coriolis": "explicit" if motion.explicit_coriolis else "exact",
-            "damping": self.damping,
-            "timestep_factor": float(self.timestep_factor),
-            "steps": int(self.state.counter[STEPS]),
-            "timestep": first[-1],
-            "end_reason": self.reason,
-            "material": grain.material.name,
-            "type": grain.type or "",
-            "a_eff": grain.effective_radius,
-            "seed": -1 if grain.seed is None else int(grain.seed),
-            "cut_bound": self.bound,
-        } | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
+        run.attrs = (
+            self.how.attributes
+            | {
+                "steps": int(self.state.counter[STEPS]),
+                "timestep": first[-1],
+                "smaller_steps": self.smaller_steps,
+                "end_reason": self.reason,
+                "material": grain.material.name,
+                "type": grain.type or "",
+                "a_eff": grain.effective_radius,
+                "seed": -1 if grain.seed is None else int(grain.seed),
+                "cut_bound": self.bound,
+            }
+            | {f"initial_{name}": initial[name] for name in ("mass", "axis_a", "axis_b", "axis_c", "porosity")}
+        )
         run.attrs |= {f"initial_{name}": int(initial[name]) for name in ("n_monomers", "n_contacts")}
         return run
 

@@ -79,13 +79,15 @@ class Settings(Cells):
 
     def pace(self, drive):
         """How fast a drive spins up, in words, such as ``"epsilon = 0.01"``."""
-        law = self.spin_up_of(drive)
-        epsilon = law["epsilon"]
+        own = self.spin_up_of(drive)
+        if own["pace"] is not None:
+            return f"pace = {own['pace']:g}"
+        epsilon = own["epsilon"]
         if isinstance(epsilon, dict):
             return "epsilon = " + ", ".join(f"{epsilon[kind]:g} ({kind})" for kind in self.config["types"])
         if epsilon is not None:
             return f"epsilon = {epsilon:g}"
-        return f"d omega/dt = {law['angular_acceleration']:.3g} rad/s²"
+        return f"d omega/dt = {own['angular_acceleration']:.3g} rad/s²"
 
     def spin_up(self, drive, material, kind, size, block):
         """Settings of the spin-up of one block."""
@@ -191,21 +193,17 @@ class Settings(Cells):
     def parameters(self, drive, kind, size):
         """Settings of the runs of figure 9 of one type and size, one a way (see `variations.spin_up_ways`)."""
         own = self.config["figures"]["figure9"]
-        paces = {
-            "prescribed": {
-                "epsilon": own["epsilon"],
-                "angular_acceleration": None,
-                "timestep_factor": own["timestep_factor"],
-            },
-            "literal": {"epsilon": None}
-            | {name: own["literal"][name] for name in ("angular_acceleration", "timestep_factor")},
-        }
+        pace = {}
+        if drive == "literal":
+            pace = {"epsilon": None} | {
+                name: own["literal"][name] for name in ("angular_acceleration", "timestep_factor")
+            }
         return [
             {
                 "grain": self.grow(own["material"], kind, size),
                 "changed": way["changed"],
                 "seeds": _seeds(own),
-                "spin_up": {"drive": drive} | self.spin_up_of(drive, kind) | paces[drive],
+                "spin_up": {"drive": drive} | self.spin_up_of(drive, kind) | pace,
             }
             for way in self.parameter_ways
         ]
@@ -252,13 +250,12 @@ class Settings(Cells):
         In the order of `formula_cells`.
         """
         own = self.config["figures"]["formulae"]
-        pace = {"epsilon": own["epsilon"], "angular_acceleration": None, "timestep_factor": own["timestep_factor"]}
         return [
             {
                 "grain": self.grow(own["material"], kind, size),
                 "changed": {"viscous_time": 0.0} if formula == DAMPING else {},
                 "seeds": _seeds(own),
-                "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed", kind) | pace,
+                "spin_up": {"drive": "prescribed"} | self.spin_up_of("prescribed", kind),
             }
             for kind, size in self.formula_cells
         ]

@@ -1,0 +1,116 @@
+"""How a grain is turned: what a user asks for, made into a drive and an integrator."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.drives import quasi_static as slow
+from ratd.drives import rotating as fast
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.semi_implicit import semi_implicit
+
+__all__ = ["DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "TIMESTEP_FACTOR", "UNREST", "How", "how_to_turn"]
+
+DRIVES = ("prescribed", "torque", "literal")
+"""What turns a grain: an omega that rises, an angular momentum that rises, or the equations as printed."""
+QUASI_STATIC = "quasi-static"
+
+PACE = 0.0025
+"""(d omega/dt)/omega^2 of a grain at rest, the number of the accuracy: see `ratd.validation.quasi_static`."""
+UNREST = 0.02
+"""q_0: the spin-up waits while the motion of the grain exceeds this part of its rotation."""
+DRAG = 1.0
+"""c: motion in the turning frame decays at the rate c omega."""
+STEP = {"longest": 4e-9, "displacement": 2e-10, "travel": 2e-9, "calming": 0.1}
+"""What the semi-implicit step may do, see `ratd.engine.semi_implicit`."""
+
+EPSILON = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.005}
+"""Of the constant-epsilon law for `literal` where nothing is said; a grain of no known type takes the least."""
+TIMESTEP_FACTOR = 0.125
+FIRST_LOSS = 0.7
+"""Part of the cut bound from which on epsilon is constant. BA grains mostly lose their first monomers above it, BAM
+grains often below, where the spin-up is faster than epsilon (docs/model/drives.md, The law omega(t))."""
+
+
+class How(NamedTuple):
+    """How a grain is turned; made by `how_to_turn`.
+
+    Attributes
+    ----------
+    motion, integrator : parts
+    attributes : dict
+        The same in words and numbers, for the file of the run.
+    """
+
+    motion: object
+    integrator: object
+    attributes: dict
+
+
+def how_to_turn(
+    kind, bound, *, drive="prescribed", pace=None, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
+    coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
+):  # fmt: skip
+    """Drive and integrator from the words of a user, see `ratd.spin_up`.
+
+    Parameters
+    ----------
+    kind : str or None
+        Type of the grain.
+    bound : float
+        Its cut bound [rad/s].
+
+    Returns
+    -------
+    How
+
+    Raises
+    ------
+    InputError
+    """
+    if drive not in DRIVES:
+        raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
+    paced = epsilon is not None or angular_acceleration is not None
+    if pace is not None and (paced or drive == "literal"):
+        raise InputError(
+            "pace is for a spin-up that waits until the grain is quiet; it is given beside "
+            f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not wait."
+        )
+    if drive == "torque" and paced:
+        raise InputError(
+            "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
+            "quiet, and knows pace only."
+        )
+    omega_1 = FIRST_LOSS * bound
+    nothing = {"unrest": np.nan, "pace": np.nan, "drag": np.nan, "epsilon": np.nan, "displacement": np.nan}
+    words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}
+    if drive == "literal" or paced:
+        if not paced:
+            epsilon = EPSILON.get(kind, min(EPSILON.values()))
+        motion = fast.rotating(
+            drive, omega_1=omega_1, epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis
+        )
+        integrator = integrator or leapfrog(timestep_factor=timestep_factor, damping=damping)
+        words |= {
+            "spin_up_law": fast.SPIN_UP_LAWS[motion.law],
+            "coriolis": "explicit" if motion.explicit_coriolis else "exact",
+            "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2 / fast.SOFT_START,
+        }
+        numbers = nothing | {"epsilon": np.nan if epsilon is None else float(epsilon)}
+    else:
+        motion = slow.quasi_static(
+            drive, omega_1=omega_1, pace=PACE if pace is None else pace, unrest=unrest, drag=drag
+        )
+        integrator = integrator or semi_implicit(**STEP)
+        words |= {
+            "spin_up_law": QUASI_STATIC,
+            "coriolis": "explicit",
+            "angular_acceleration": slow.rise(motion, 0.0),
+        }
+        numbers = nothing | {"unrest": motion.unrest, "pace": motion.pace, "drag": motion.drag}
+    numbers["displacement"] = float(getattr(integrator, "displacement", np.nan))
+    words["integrator"] = "semi-implicit" if hasattr(integrator, "displacement") else "leapfrog"
+    if words["integrator"] == "semi-implicit":
+        words["damping"] = "implicit"
+    return How(motion, integrator, words | numbers)

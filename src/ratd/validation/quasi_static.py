@@ -1,0 +1,139 @@
+"""The quasi-static spin-up: what each of its numbers does to the marks, and the marks beside another way to them.
+
+Every grain is spun up as in production, and with one number changed at a time. A grain compared with itself has no
+scatter from its form; what is left is the shift that is looked for and the chaos of the breaks, which the same run with
+a start moved by 1e-12 m shows.
+"""
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow
+from ratd.base.statistics import median_of
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.semi_implicit import semi_implicit
+from ratd.experiments.spin_up.how import STEP
+from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.run import spin_up
+from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+
+MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
+COLUMNS = {
+    "vary": ("", "what is changed, production where nothing is"),
+    "value": ("1", "to what: a number, or the place in the list of words of VARIED"),
+    **GRAIN_COLUMNS,
+    "outcome": ("", "how the run ended"),
+    "steps": ("1", "time steps up to the end"),
+    "steps_mass_75": ("1", "time steps until a quarter of the mass was lost"),
+    "smaller_steps": ("1", "parts of the run made again with smaller steps"),
+    "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
+    **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
+    "angular_momentum_first_loss": ("kg m2 s-1", "angular momentum in the record before the first loss"),
+    "axis_ratio_first_loss": ("1", "longest over shortest semi-axis in the record before the first loss"),
+    "angular_momentum_mass_75": ("kg m2 s-1", "angular momentum in the record before a quarter of the mass is lost"),
+    "axis_ratio_mass_75": ("1", "longest over shortest semi-axis in the record before a quarter of the mass is lost"),
+}
+KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against each of its numbers", COLUMNS)
+PRODUCTION = "production"
+MOVED = 1e-12
+"""Distance [m] by which the start of a repeat is moved."""
+WORDS = {"drive": ("prescribed", "torque", "literal"), "integrator": ("semi-implicit", "leapfrog")}
+"""What is changed to a word, and the words."""
+
+
+def compute(settings, progress=None):
+    """Spin one grain up in every way.
+
+    Parameters
+    ----------
+    settings : dict
+        material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: unrest, pace, drag, drive, epsilon
+        (arguments of `ratd.spin_up`), longest, displacement, travel, calming (of the semi-implicit step), integrator,
+        moved (seeds of random shifts of the start).
+    progress : callable, optional
+        Called with a sentence after each run.
+
+    Returns
+    -------
+    list of dict
+        Rows of `COLUMNS`. A run that fails has NaN marks and says so in ``outcome``.
+    """
+    grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
+    rows = [_spin(grain, PRODUCTION, 0.0)]
+    for vary, values in settings["vary"].items():
+        for value in values:
+            rows.append(_spin(grain, vary, value))
+            if progress is not None:
+                progress(f"{vary} {value}: {rows[-1]['outcome']}")
+    return rows
+
+
+def _arguments(vary, value):
+    """Arguments of `ratd.spin_up` for one change."""
+    if vary in STEP:
+        return {"integrator": semi_implicit(**(STEP | {vary: value}))}
+    if vary == "integrator":
+        return {"integrator": leapfrog()}
+    if vary in (PRODUCTION, "moved"):
+        return {}
+    return {vary: value}
+
+
+def _spin(grain, vary, value):
+    if vary == "moved":
+        shift = np.random.default_rng(value).normal(scale=MOVED, size=grain.position.shape)
+        grain = Grain(
+            grain.position + shift, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed
+        )
+    row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
+    number = WORDS[vary].index(value) if vary in WORDS else float(value)
+    row |= {"vary": vary, "value": number, **grain_values(grain)}
+    try:
+        run = spin_up(grain, **_arguments(vary, value))
+    except RuntimeError as error:
+        return row | {"outcome": "failed: " + str(error).split(":")[0]}
+    marks = disruption(run)
+    row |= {name: float(marks[name]) for name in MARKS}
+    for mark in ("first_loss", "mass_75"):
+        after = np.flatnonzero(run.omega.values >= row[f"omega_{mark}"])
+        if len(after):
+            before = max(after[0] - 1, 0)
+            row[f"angular_momentum_{mark}"] = float(run.angular_momentum[before])
+            row[f"axis_ratio_{mark}"] = float(run.axis_c[before] / run.axis_a[before])
+            if mark == "mass_75":
+                row["steps_mass_75"] = int(run.steps[after[0]])
+    return row | {
+        "outcome": run.attrs["end_reason"],
+        "steps": run.attrs["steps"],
+        "smaller_steps": run.attrs["smaller_steps"],
+        "cut_bound": run.attrs["cut_bound"],
+    }
+
+
+def shifts(table, marks=MARKS, by=("type",)):
+    """Medians of the marks over those of production, grain by grain.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Rows of `COLUMNS`.
+    marks : sequence of str
+    by : sequence of str
+        Columns to group by, beside vary and value.
+
+    Returns
+    -------
+    pandas.DataFrame
+        vary, value, the columns of `by`, mark, and what `median_of` of ratd.base.statistics gives for the ratios.
+    """
+    grain = ["material", "type", "a_eff", "seed"]
+    own = table[table["vary"] == PRODUCTION].set_index(grain)
+    found = []
+    for (vary, value), part in table[table["vary"] != PRODUCTION].groupby(["vary", "value"]):
+        for mark in marks:
+            ratio = part.set_index(grain)[mark] / own[mark].reindex(pd.MultiIndex.from_frame(part[grain]))
+            for key, ratios in ratio.groupby(list(by)):
+                names = dict(zip(by, key if isinstance(key, tuple) else (key,), strict=True))
+                found.append({"vary": vary, "value": value, **names, "mark": mark} | median_of(ratios))
+    return pd.DataFrame(found)
