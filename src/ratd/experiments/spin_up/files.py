@@ -10,8 +10,9 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 
 __all__ = ["END_REASONS", "RUN_SETTINGS", "RUN_VALUES"]
 
-_NAN = ("axis_a", "axis_b", "axis_c", "porosity")
-"""Records that may be undefined: few monomers have no ellipsoid."""
+_NAN = ("axis_a", "axis_b", "axis_c", "porosity", "angular_momentum")
+"""Records that may be undefined: few monomers have no ellipsoid; a largest fragment that is new has no angular momentum
+before its first step."""
 
 END_REASONS = ("one contact left", "omega_RAT reached", "max_steps reached")
 """Why a spin-up ended; the flag in a file is the place in this list."""
