@@ -9,6 +9,7 @@ import time
 
 import pytest
 import yaml
+from rocrate.rocrate import ROCrate
 
 import browser
 from ratd.experiments.spin_up import run_files
@@ -314,3 +315,13 @@ def test_report_in_a_browser(report):
         assert rows(page, "Tables") == [*tables, "Table 3, drive prescribed"]
         assert rows(page, "Figures") == ["1", "2", "4", "5", "6", "7", "8", "9", "10", "study"]
         assert rows(page, "Interactive") == ["one grain coming apart"]
+
+
+def test_results_are_described_as_a_crate(copy_of):
+    done = copy_of.run("crate")
+    assert done.returncode == 0, done.stdout
+    crate = ROCrate(copy_of.folder / "results" / "tiny")
+    (run,) = crate.get_by_type("CreateAction")
+    made = {file.id for file in run["result"]}
+    assert {RUNS.removeprefix("results/tiny/"), "figures/figure7_prescribed.png"} <= made
+    assert [file.id for file in run["object"]] == ["config.yaml"]

@@ -17,6 +17,8 @@ min_version("9.27")
 # Not so in a job on a cluster, which is a Snakemake of its own and may outlive the one that sent it.
 if workflow.is_main_process:
     jobs.release_stale_locks()
+# A dry run may be beside one that is at work.
+if workflow.is_main_process and not workflow.output_settings.dryrun:
     # told again at the very end, below all that Snakemake says of it
     first_error.begin()
     atexit.register(lambda: print(first_error.kept(), end="", file=sys.stderr))

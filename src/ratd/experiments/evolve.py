@@ -20,6 +20,7 @@ from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
+from ratd.pipeline.provenance import source_hash
 
 __all__ = ["evolve"]
 
@@ -141,7 +142,9 @@ def evolve(
     settings = (materials, law, box, drive, integrator, float(duration), int(records))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
-    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
+    # a run that one source has begun is not gone on with by another
+    source = None if checkpoint is None else source_hash(modules=[__name__])
+    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given, source)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows = loaded[0], list(loaded[1]["rows"])
