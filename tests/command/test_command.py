@@ -17,7 +17,7 @@ from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.spin_up import command, run_files
 from ratd.pipeline.kinds import HOMES
 
-FAST = ("--material", "q-S", "--pace", "0.5", "--starts", "3")
+FAST = ("--material", "q-S", "--epsilon", "1", "--starts", "3")
 
 
 def run(*arguments):

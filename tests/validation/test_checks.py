@@ -12,7 +12,7 @@ import ratd
 from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
 from ratd.base.statistics import median_of
-from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.how import EPSILON, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
 from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import io, kinds

@@ -21,7 +21,7 @@ from ratd.drives.rotating import (
 )  # fmt: skip
 from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import (
-    DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, TORQUE_X, VX,
+    DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STRETCH, TORQUE_X, VX,
     WX, X,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
@@ -48,6 +48,8 @@ class QuasiStatic(NamedTuple):
         (d omega/dt)/omega^2 above omega_1 while the grain is at rest.
     unrest : float
         q_0: at this unrest the rise stops.
+    stretch : float
+        The rise stops as well where a contact is stretched or pressed by so much in a step [m].
     drag : float
         c: velocities in the turning frame decay at the rate c omega.
     torque : bool
@@ -57,6 +59,7 @@ class QuasiStatic(NamedTuple):
     omega_1: float
     pace: float
     unrest: float
+    stretch: float
     drag: float
     torque: bool
 
@@ -100,7 +103,9 @@ class QuasiStatic(NamedTuple):
         inertia += drive[OWN_INERTIA]
         reference = max(omega, self.omega_1)
         unrest = math.sqrt(2.0 * energy / inertia) / reference
-        rate = rise(self, omega) * max(0.0, 1.0 - (unrest / self.unrest) ** 2)
+        quiet = max(0.0, 1.0 - (unrest / self.unrest) ** 2)
+        still = max(0.0, 1.0 - (state.scalar[STRETCH] / self.stretch) ** 2)
+        rate = rise(self, omega) * quiet * still
         excess = momentum / inertia
         drive[UNWIND] = turn_to_take_out(excess, drive[EXCESS], unwind)
         drive[EXCESS] = excess
@@ -121,7 +126,7 @@ class QuasiStatic(NamedTuple):
         state.scalar[FASTEST] = fastest if abs(momentum) < np.inf else math.nan
 
 
-def quasi_static(name, *, omega_1, pace=0.0025, unrest=0.02, drag=1.0):
+def quasi_static(name, *, omega_1, stretch=2e-14, pace=0.02, unrest=0.02, drag=1.0):
     """Drive from the words that a user gives.
 
     Parameters
@@ -130,9 +135,12 @@ def quasi_static(name, *, omega_1, pace=0.0025, unrest=0.02, drag=1.0):
         Whether omega or the angular momentum rises.
     omega_1 : float
         Angular velocity [rad/s] from which on the rise has a constant epsilon.
+    stretch : float
+        The rise slows down as a contact is stretched or pressed in a step, and stops at so much [m]. It is the number
+        of the accuracy; the limit is stretch -> 0. A contact that gives way begins slowly, the more so in a step that
+        weighs its motion with its stiffness, and omega would rise on meanwhile.
     pace : float
-        That epsilon, (d omega/dt)/omega^2, while the grain is at rest. It is the number of the accuracy; the limit is
-        pace -> 0: a contact that gives way takes a part of 1/omega to part, in which omega rises on.
+        The epsilon above, (d omega/dt)/omega^2, while the grain is at rest.
     unrest : float
         q_0: unrest at which the rise stops.
     drag : float
@@ -148,10 +156,10 @@ def quasi_static(name, *, omega_1, pace=0.0025, unrest=0.02, drag=1.0):
     """
     if name not in DRIVES:
         raise InputError(f"drive is {name!r}; allowed are {', '.join(DRIVES)}.")
-    for word, value in (("pace", pace), ("unrest", unrest), ("drag", drag), ("omega_1", omega_1)):
+    for word, value in (("pace", pace), ("unrest", unrest), ("stretch", stretch), ("drag", drag), ("omega_1", omega_1)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
-    return QuasiStatic(float(omega_1), float(pace), float(unrest), float(drag), name == "torque")
+    return QuasiStatic(float(omega_1), float(pace), float(unrest), float(stretch), float(drag), name == "torque")
 
 
 @jit

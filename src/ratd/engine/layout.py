@@ -26,12 +26,13 @@ SCALARS = (
     "lost_made lost_broken "  # radiated where contacts jump in, and what broken ones still held [J]
     "fastest "  # greatest speed after the last step [m/s]
     "dt_contacts "  # the step that the contacts allow [s]
+    "stretch "  # greatest change of a compression in the last step, where the integrator looks at it [m]
     "virial_xx virial_yy virial_zz virial_xy virial_xz virial_yz"  # sum of d_a F_b over contacts, last step [J]
 ).split()
 (
     TIME, DT, DT_DRIFT, LOST_DAMP, LOST_SLIDE, LOST_ROLL, LOST_TWIST, LOST_MADE, LOST_BROKEN, FASTEST,
-    DT_CONTACTS, VIRIAL,
-) = range(12)  # fmt: skip
+    DT_CONTACTS, STRETCH, VIRIAL,
+) = range(13)  # fmt: skip
 
 DRIVE_SCALARS = 24
 """Numbers that a drive may keep; the first is its clock, in which `Until.clock` and the fragments lost are told."""

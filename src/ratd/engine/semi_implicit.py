@@ -19,7 +19,7 @@ from ratd.engine.contacts import contact_start, difference, get_image
 from ratd.engine.forces import contact_forces
 from ratd.engine.layout import (
     CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, MASS, MONOMERS, RADIUS, ROW, STEPS,
-    TIME, TORQUE_X, VX, WX,
+    STRETCH, TIME, TORQUE_X, VX, WX,
 )  # fmt: skip
 from ratd.engine.leapfrog import SAMPLE_EVERY
 from ratd.laws.contact_fields import NCX, NCY, NCZ
@@ -28,10 +28,8 @@ RUNG = math.sqrt(0.5)
 """Steps are the longest one times a power of this, so that the matrix seldom changes."""
 CLIMB_AFTER = 8
 """Steps on a rung before the next longer one is tried."""
-LOOK_EVERY = 16
-"""Steps between two looks at how far the contacts have turned since the matrix was made."""
-TURNED = 0.01
-"""Angle [rad] by which a contact may have turned."""
+TURNED = 0.005
+"""Angle [rad] by which a contact may have turned since the matrix was made."""
 SPHERE = 0.4
 """Moment of inertia of a sphere over m a^2."""
 
@@ -47,19 +45,17 @@ class Work(NamedTuple):
     factor : BlockFactor
     block : (contacts,) int64
         Number of the block of each contact, and whether its rows are those of i: twice the number plus 0 or 1.
-    normal : (contacts, 3) float64
-        Directions of the contacts for which the matrix was made.
     x : (8 n,) float64
         The right-hand side, and the solution.
     made : (2,) float64
-        Step [s] for which the matrix was made; 0 when it has to be made anew.
+        Step [s] for which the matrix was made, 0 when it has to be made anew; angle [rad] by which a contact may have
+        turned since.
     count : (2,) int64
         Steps since the last change of the step's length; matrices made.
     """
 
     factor: BlockFactor
     block: np.ndarray
-    normal: np.ndarray
     x: np.ndarray
     made: np.ndarray
     count: np.ndarray
@@ -121,7 +117,7 @@ class SemiImplicit(NamedTuple):
         drive.load(state, kick)
         # the first step after a long one still begins with what that one has put in
         held = max(dt, scalar[DT_DRIFT])
-        if work.made[0] != held or (counter[STEPS] % LOOK_EVERY == 0 and has_turned(state, law, work)):
+        if work.made[0] != held or work.made[1] > TURNED:
             make_matrix(state, law, box, self.theta, held, work)
         weigh(state, self.calming / kick, work)
         drive.move(state, box, kick, dt)
@@ -132,7 +128,10 @@ class SemiImplicit(NamedTuple):
 
     def limit(self, state, law, drive, least, work):
         scalar = state.scalar
-        speed = max(contact_speed(state, law) / self.displacement, scalar[FASTEST] / self.travel)
+        greatest, turning, stretching = contact_speeds(state, law)
+        work.made[1] += turning * scalar[DT_DRIFT]
+        scalar[STRETCH] = stretching * scalar[DT_DRIFT]
+        speed = max(greatest / self.displacement, scalar[FASTEST] / self.travel)
         allowed = min(self.longest, drive.longest_step(state))
         if speed > 0.0:
             allowed = min(allowed, 1.0 / speed)
@@ -158,7 +157,7 @@ def _work(state, law):
     factor = order_blocks(n, state.pair_i, state.pair_j, contacts)
     block = np.empty(contacts, dtype=np.int64)
     _find_blocks(state, factor, block)
-    return Work(factor, block, np.empty((contacts, 3)), np.zeros(PADDED * n), np.zeros(2), np.zeros(2, dtype=np.int64))
+    return Work(factor, block, np.zeros(PADDED * n), np.zeros(2), np.zeros(2, dtype=np.int64))
 
 
 @jit
@@ -180,23 +179,10 @@ def _renewed(state, law, work):
         block = np.empty(contacts, dtype=np.int64)
         if _find_blocks(state, work.factor, block):
             work.made[0] = 0.0
-            return Work(work.factor, block, np.empty((contacts, 3)), work.x, work.made, work.count)
+            return Work(work.factor, block, work.x, work.made, work.count)
     fresh = _work(state, law)
     fresh.count[:] = work.count
     return fresh
-
-
-@jit
-def has_turned(state, law, work):
-    """Whether a contact has turned by more than `TURNED` since the matrix was made."""
-    for k in range(state.counter[CONTACTS]):
-        at = contact_start(law, k)
-        dx = state.contact[at + NCX] - work.normal[k, 0]
-        dy = state.contact[at + NCY] - work.normal[k, 1]
-        dz = state.contact[at + NCZ] - work.normal[k, 2]
-        if dx * dx + dy * dy + dz * dz > TURNED**2:
-            return True
-    return False
 
 
 @jit
@@ -235,7 +221,6 @@ def make_matrix(state, law, box, theta, dt, work):
         at = contact_start(law, k)
         i, j = np.int64(state.pair_i[k]), np.int64(state.pair_j[k])
         n = (state.contact[at + NCX], state.contact[at + NCY], state.contact[at + NCZ])
-        work.normal[k, 0], work.normal[k, 1], work.normal[k, 2] = n
         a_i = state.monomer[np.uint64(i) * _ROW + RADIUS]
         a_j = state.monomer[np.uint64(j) * _ROW + RADIUS]
         arm = difference(state, edges, i, j, get_image(state, k))[3] / (a_i + a_j)
@@ -250,7 +235,7 @@ def make_matrix(state, law, box, theta, dt, work):
         _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
     if not factorise(factor):
         state.scalar[FASTEST] = math.nan
-    work.made[0] = dt
+    work.made[0], work.made[1] = dt, 0.0
     work.count[1] += 1
 
 
@@ -322,10 +307,20 @@ def weigh(state, rate, work):
 
 
 @jit
-def contact_speed(state, law):
-    """Greatest speed [m/s] at which two monomers in contact move or turn against each other, times that lever."""
+def contact_speeds(state, law):
+    """Greatest speed at which two monomers in contact move or roll against each other, and at which a contact turns.
+
+    Returns
+    -------
+    greatest : float
+        Of the contact points, or of the spins times the reduced radius [m/s].
+    turning : float
+        Of the line between the centres [rad/s], an upper limit.
+    stretching : float
+        Of the contact points along that line [m/s].
+    """
     monomer, contact = state.monomer, state.contact
-    greatest = 0.0
+    greatest, turning, stretching = 0.0, 0.0, 0.0
     for k in range(state.counter[CONTACTS]):
         at = contact_start(law, k)
         i = state.pair_i[k] * _ROW
@@ -337,15 +332,20 @@ def contact_speed(state, law):
         wx = a_i * monomer[i + WX] + a_j * monomer[j + WX]
         wy = a_i * monomer[i + WX + one] + a_j * monomer[j + WX + one]
         wz = a_i * monomer[i + WX + two] + a_j * monomer[j + WX + two]
-        gx = monomer[i + VX] - monomer[j + VX] + ny * wz - nz * wy
-        gy = monomer[i + VX + one] - monomer[j + VX + one] + nz * wx - nx * wz
-        gz = monomer[i + VX + two] - monomer[j + VX + two] + nx * wy - ny * wx
+        vx = monomer[i + VX] - monomer[j + VX]
+        vy = monomer[i + VX + one] - monomer[j + VX + one]
+        vz = monomer[i + VX + two] - monomer[j + VX + two]
+        turning = max(turning, (vx * vx + vy * vy + vz * vz) / (a_i + a_j) ** 2)
+        stretching = max(stretching, abs(vx * nx + vy * ny + vz * nz))
+        gx = vx + ny * wz - nz * wy
+        gy = vy + nz * wx - nx * wz
+        gz = vz + nx * wy - ny * wx
         r = a_i * a_j / (a_i + a_j)
         tx = monomer[i + WX] - monomer[j + WX]
         ty = monomer[i + WX + one] - monomer[j + WX + one]
         tz = monomer[i + WX + two] - monomer[j + WX + two]
         greatest = max(greatest, gx * gx + gy * gy + gz * gz, r * r * (tx * tx + ty * ty + tz * tz))
-    return math.sqrt(greatest)
+    return math.sqrt(greatest), math.sqrt(turning), stretching
 
 
 def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calming=0.0, first=0.125):

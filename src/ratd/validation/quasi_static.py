@@ -48,7 +48,7 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: unrest, pace, drag, drive, epsilon
+        material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: stretch, unrest, pace, drag, drive, epsilon
         (arguments of `ratd.spin_up`), longest, displacement, travel, calming (of the semi-implicit step), integrator,
         moved (seeds of random shifts of the start).
     progress : callable, optional

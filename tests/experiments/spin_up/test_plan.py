@@ -7,7 +7,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, check, load
-from ratd.experiments.spin_up.run import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.how import EPSILON, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.seeds import size_label
 from ratd.pipeline import config as configs
 from ratd.pipeline.config import merge

@@ -32,8 +32,12 @@ SNAPSHOTS = 10
 
 @click.command("spin-up")
 @aggregate_options
-@click.option("--pace", type=click.FloatRange(0, 1, min_open=True), help="(d omega/dt)/omega².  [default: slow]")
-def command(file, material, unit, starts, out, pace):
+@click.option(
+    "--epsilon",
+    type=click.FloatRange(0, 1, min_open=True),
+    help="Rise with this (d omega/dt)/omega² without waiting: faster, less accurate.  [default: wait while it moves]",
+)
+def command(file, material, unit, starts, out, epsilon):
     """Spin an aggregate up until it comes apart.
 
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
@@ -41,7 +45,7 @@ def command(file, material, unit, starts, out, pace):
     """
     particles = read_particles(file, unit=unit)
     out = file.with_name(f"{file.stem}_spin_up") if out is None else out
-    settings = {"material": material, "unit": unit, "pace": pace}
+    settings = {"material": material, "unit": unit, "epsilon": epsilon}
     made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run"]), settings, [file])
     particles.grain(material)  # says what is wrong before anything is begun
 
@@ -51,7 +55,7 @@ def command(file, material, unit, starts, out, pace):
         return run_row(
             spin_up(
                 grain,
-                pace=pace,
+                epsilon=epsilon,
                 snapshot_every=SNAPSHOTS if start == 0 else 0,
                 checkpoint=checkpoint,
                 progress=lambda omega, mass, to_go, steps: progress(part_done(begun, to_go)),

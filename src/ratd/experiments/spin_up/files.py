@@ -37,7 +37,7 @@ RUN_VALUES = {
 """Numbers of a run, one a grain: attributes of the dataset of a run, variables of the file of a block."""
 
 RUN_SETTINGS = (
-    "material", "type", "drive", "spin_up_law", "unrest", "pace", "drag", "epsilon", "integrator", "displacement",
+    "material", "type", "drive", "spin_up_law", "stretch", "unrest", "pace", "drag", "epsilon", "integrator", "displacement",
     "coriolis", "damping", "timestep_factor",
 )  # fmt: skip
 """Attributes of the dataset of a run that are the same for all grains of a block: global attributes of its file."""

@@ -10,14 +10,28 @@ from ratd.drives import rotating as fast
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
 
-__all__ = ["DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "TIMESTEP_FACTOR", "UNREST", "How", "how_to_turn"]
+__all__ = [
+    "DRAG",
+    "DRIVES",
+    "EPSILON",
+    "FIRST_LOSS",
+    "PACE",
+    "STRETCH",
+    "TIMESTEP_FACTOR",
+    "UNREST",
+    "How",
+    "how_to_turn",
+]
 
 DRIVES = ("prescribed", "torque", "literal")
 """What turns a grain: an omega that rises, an angular momentum that rises, or the equations as printed."""
 QUASI_STATIC = "quasi-static"
 
-PACE = 0.0025
-"""(d omega/dt)/omega^2 of a grain at rest, the number of the accuracy: see `ratd.validation.quasi_static`."""
+STRETCH = 2e-14
+"""Greatest stretch of a contact [m] in a step of a spin-up that goes on, the number of the accuracy: see
+`ratd.validation.quasi_static`."""
+PACE = 0.02
+"""(d omega/dt)/omega^2 of a grain at rest."""
 UNREST = 0.02
 """q_0: the spin-up waits while the motion of the grain exceeds this part of its rotation."""
 DRAG = 1.0
@@ -49,7 +63,7 @@ class How(NamedTuple):
 
 
 def how_to_turn(
-    kind, bound, *, drive="prescribed", pace=None, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
+    kind, bound, *, drive="prescribed", stretch=None, pace=PACE, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
     coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
 ):  # fmt: skip
     """Drive and integrator from the words of a user, see `ratd.spin_up`.
@@ -72,18 +86,25 @@ def how_to_turn(
     if drive not in DRIVES:
         raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
     paced = epsilon is not None or angular_acceleration is not None
-    if pace is not None and (paced or drive == "literal"):
+    if stretch is not None and (paced or drive == "literal"):
         raise InputError(
-            "pace is for a spin-up that waits until the grain is quiet; it is given beside "
+            "stretch is for a spin-up that waits until the grain is quiet; it is given beside "
             f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not wait."
         )
     if drive == "torque" and paced:
         raise InputError(
             "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
-            "quiet, and knows pace only."
+            "quiet, and knows stretch only."
         )
     omega_1 = FIRST_LOSS * bound
-    nothing = {"unrest": np.nan, "pace": np.nan, "drag": np.nan, "epsilon": np.nan, "displacement": np.nan}
+    nothing = {
+        "stretch": np.nan,
+        "unrest": np.nan,
+        "pace": np.nan,
+        "drag": np.nan,
+        "epsilon": np.nan,
+        "displacement": np.nan,
+    }
     words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}
     if drive == "literal" or paced:
         if not paced:
@@ -100,7 +121,7 @@ def how_to_turn(
         numbers = nothing | {"epsilon": np.nan if epsilon is None else float(epsilon)}
     else:
         motion = slow.quasi_static(
-            drive, omega_1=omega_1, pace=PACE if pace is None else pace, unrest=unrest, drag=drag
+            drive, omega_1=omega_1, stretch=STRETCH if stretch is None else stretch, pace=pace, unrest=unrest, drag=drag
         )
         integrator = integrator or semi_implicit(**STEP)
         words |= {
@@ -108,7 +129,12 @@ def how_to_turn(
             "coriolis": "explicit",
             "angular_acceleration": slow.rise(motion, 0.0),
         }
-        numbers = nothing | {"unrest": motion.unrest, "pace": motion.pace, "drag": motion.drag}
+        numbers = nothing | {
+            "stretch": motion.stretch,
+            "unrest": motion.unrest,
+            "pace": motion.pace,
+            "drag": motion.drag,
+        }
     numbers["displacement"] = float(getattr(integrator, "displacement", np.nan))
     words["integrator"] = "semi-implicit" if hasattr(integrator, "displacement") else "leapfrog"
     if words["integrator"] == "semi-implicit":

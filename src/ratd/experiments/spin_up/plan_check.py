@@ -106,9 +106,9 @@ def _paces(plan):
     for drive in plan.config["drives"]:
         where = "run and literal together" if drive == "literal" else "run"
         for kind in plan.config["types"]:
-            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("pace", "epsilon", "angular_acceleration")}
-            if drive == "literal" and laws["pace"] is not None or drive == "torque" and laws["pace"] is None:
-                wanted = "null for pace, since it does not wait" if drive == "literal" else "a number for pace"
+            laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("stretch", "epsilon", "angular_acceleration")}
+            if drive == "literal" and laws["stretch"] is not None or drive == "torque" and laws["stretch"] is None:
+                wanted = "null for stretch, since it does not wait" if drive == "literal" else "a number for stretch"
                 yield f": {where} give {laws} for the drive {drive}; allowed: {wanted}"
                 break
             if sum(value is not None for value in laws.values()) != 1:

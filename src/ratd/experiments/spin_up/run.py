@@ -16,7 +16,7 @@ from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.how import DRAG, TIMESTEP_FACTOR, UNREST, how_to_turn
+from ratd.experiments.spin_up.how import DRAG, PACE, TIMESTEP_FACTOR, UNREST, how_to_turn
 from ratd.experiments.spin_up.records import RECORDS, Watch, dataset, edge_of_record, let_go, record, snapshot
 from ratd.geometry.box import open_space
 from ratd.laws.jkr_with_springs import jkr
@@ -34,7 +34,8 @@ def spin_up(
     grain,
     *,
     drive="prescribed",
-    pace=None,
+    stretch=None,
+    pace=PACE,
     unrest=UNREST,
     drag=DRAG,
     epsilon=None,
@@ -58,12 +59,12 @@ def spin_up(
     drive : {"prescribed", "torque", "literal"}
         What rises: omega, or the angular momentum, from which omega follows (`ratd.drives.quasi_static`); or the
         equations as printed (`ratd.drives.rotating`).
-    pace : float, optional
-        (d omega/dt)/omega^2 while the grain is at rest. The smaller, the nearer to the limit of hours; `PACE` of
-        `ratd.experiments.spin_up.how` when not given.
-    unrest, drag : float
-        q_0, the part of its rotation that the motion of the grain exceeds while the spin-up waits; decay of motion in
-        the turning frame over omega.
+    stretch : float, optional
+        The spin-up slows down as a contact is stretched or pressed in a step, and waits at so much [m]. The smaller, the
+        nearer to the limit of hours; `STRETCH` of `ratd.experiments.spin_up.how` when not given.
+    pace, unrest, drag : float
+        (d omega/dt)/omega^2 of a grain at rest; q_0, the part of its rotation that the motion of the grain exceeds
+        while the spin-up waits; decay of motion in the turning frame over omega.
     epsilon : float, optional
         Do not wait: spin up with this constant (d omega/dt)/omega^2 above omega_1, `FIRST_LOSS` times the cut bound,
         and with an even rise of omega^2 below it. For `literal` that of its type when nothing is given.
@@ -108,7 +109,7 @@ def spin_up(
     """
     bound = cut_bound(grain) if isinstance(grain, Grain) else math.nan
     how = how_to_turn(
-        getattr(grain, "type", None), bound, drive=drive, pace=pace, unrest=unrest, drag=drag, epsilon=epsilon,
+        getattr(grain, "type", None), bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag, epsilon=epsilon,
         angular_acceleration=angular_acceleration, coriolis=coriolis, timestep_factor=timestep_factor, damping=damping,
         integrator=integrator,
     )  # fmt: skip

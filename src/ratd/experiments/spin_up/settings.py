@@ -80,8 +80,8 @@ class Settings(Cells):
     def pace(self, drive):
         """How fast a drive spins up, in words, such as ``"epsilon = 0.01"``."""
         own = self.spin_up_of(drive)
-        if own["pace"] is not None:
-            return f"pace = {own['pace']:g}"
+        if own["stretch"] is not None:
+            return f"stretch = {own['pace']:g}"
         epsilon = own["epsilon"]
         if isinstance(epsilon, dict):
             return "epsilon = " + ", ".join(f"{epsilon[kind]:g} ({kind})" for kind in self.config["types"])

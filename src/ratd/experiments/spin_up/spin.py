@@ -9,7 +9,7 @@ from ratd.pipeline.jobs import duration
 
 __all__ = ["block", "told"]
 
-_HOW = ("drive", "pace", "epsilon", "angular_acceleration", "timestep_factor", "max_steps", "records")
+_HOW = ("drive", "stretch", "epsilon", "angular_acceleration", "timestep_factor", "max_steps", "records")
 
 
 def told(say):

@@ -1,0 +1,159 @@
+"""The quasi-static spin-up: two monomers against the exact answer, waiting, torque, failures, bits."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ratd
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.drives.quasi_static import quasi_static, rise
+from ratd.drives.rotating import GREATEST, OMEGA, UNREST
+from ratd.engine.layout import DT, VX
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.semi_implicit import semi_implicit
+from ratd.engine.state import monomer_rows
+from ratd.engine.step import run as go_on
+from ratd.engine.step import until
+from ratd.experiments.relax import relax
+from ratd.experiments.spin_up import run as runs
+from ratd.experiments.spin_up.how import STEP
+from ratd.experiments.spin_up.run import spin_up
+from ratd.geometry.box import open_space
+from ratd.laws.jkr_with_springs import jkr
+from systems import rest_distance
+
+
+def pair(a_i, a_j, material="q-S"):
+    position = np.array([[0.0, 0, 0], [rest_distance(a_i, a_j, material), 0, 0]])
+    return ratd.Grain(position, np.array([a_i, a_j]), MATERIALS[material])
+
+
+def parting_omega(a_i, a_j, material="q-S"):
+    """Where the centrifugal force is the pull-off force: m_red omega^2 (a_i + a_j) = 3 pi gamma R (force-controlled)."""
+    material = MATERIALS[material]
+    m_i, m_j = (4 / 3 * math.pi * a**3 * material.density for a in (a_i, a_j))
+    pull = 3 * math.pi * material.surface_energy * a_i * a_j / (a_i + a_j)
+    return math.sqrt(pull / (m_i * m_j / (m_i + m_j) * (a_i + a_j)))
+
+
+@pytest.mark.parametrize("drive", ["prescribed", "torque"])
+@pytest.mark.parametrize("radii", [(30e-9, 30e-9), (12e-9, 60e-9)])
+def test_two_monomers_part_where_they_must(radii, drive):
+    run = spin_up(pair(*radii), drive=drive)
+    assert run.attrs["end_reason"] == "one contact left" and run.n_contacts[-1] == 0
+    assert float(run.omega[-1]) == pytest.approx(parting_omega(*radii), rel=3e-3)
+
+
+@pytest.fixture(scope="module")
+def grain():
+    return ratd.grow("BAM2", 100e-9, "q-S", 1)
+
+
+@pytest.fixture(scope="module")
+def run(grain):
+    return spin_up(grain, stretch=5e-14)
+
+
+def test_run_tells_how_it_was_made(run):
+    attrs = run.attrs
+    assert attrs["spin_up_law"] == "quasi-static" and attrs["integrator"] == "semi-implicit"
+    assert attrs["stretch"] == 5e-14 and attrs["smaller_steps"] == 0 and math.isnan(attrs["epsilon"])
+    assert (np.diff(run.omega) > 0).all() and (np.diff(run.steps) > 0).all()
+    np.testing.assert_array_equal(run.omega, run.frame_omega)
+
+
+def test_same_input_same_bits_and_from_a_file(run, grain, tmp_path, monkeypatch):
+    class Killed(Exception):
+        pass
+
+    def kill(self, state_run):
+        if len(state_run.rows) == 150:
+            raise Killed
+
+    path = tmp_path / "checkpoint.npz"
+    monkeypatch.setattr(runs, "CHECKPOINT_INTERVAL", 0.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(runs.Watch, "look", kill)
+        with pytest.raises(Killed):
+            spin_up(grain, stretch=5e-14, checkpoint=path)
+    xr.testing.assert_identical(run, spin_up(grain, stretch=5e-14, checkpoint=path))
+
+
+def test_explicit_step_gives_the_same_marks(run, grain):
+    """The marks are equilibria: neither the mass matrix nor the length of the step matters to them."""
+    first, quarter = (ratd.disruption(run)[name] for name in ("omega_first_loss", "omega_mass_75"))
+    explicit = ratd.disruption(spin_up(grain, stretch=5e-14, integrator=leapfrog()))
+    assert float(explicit["omega_first_loss"]) == pytest.approx(float(first), rel=0.02)
+    assert float(explicit["omega_mass_75"]) == pytest.approx(float(quarter), rel=0.02)
+
+
+def test_torque_keeps_the_angular_momentum_while_a_grain_gives_way():
+    """Two equal monomers that part: omega falls as they stretch, L does not."""
+    grain = pair(30e-9, 30e-9)
+    run = spin_up(grain, drive="torque")
+    momentum = run.angular_momentum.values[:-1]
+    assert (np.diff(momentum) > -1e-9 * momentum.max()).all()
+    assert (run.frame_omega.values <= run.omega.values * (1 + 1e-12)).all()
+
+
+def started(grain, drive):
+    law, integrator = jkr(), semi_implicit(**STEP)
+    state = relax(grain, law=law)
+    state.scalar[DT] = integrator.longest / 64
+    return state, law, integrator, quasi_static(drive, omega_1=2e8, pace=0.01)
+
+
+def test_the_spin_up_waits_while_the_grain_moves(grain):
+    state, law, integrator, drive = started(grain, "prescribed")
+    state, _ = go_on(state, law, drive, open_space(), integrator, until(clock=2e7))
+    rows = monomer_rows(state)
+    rows[0, VX] += 20.0
+    omega = state.drive[OMEGA]
+    state, _ = go_on(state, law, drive, open_space(), integrator, until(steps=int(state.counter[0]) + 3))
+    assert state.drive[UNREST] > drive.unrest and state.drive[OMEGA] == omega
+    state, _ = go_on(state, law, drive, open_space(), integrator, until(clock=2.1e7))
+    assert state.drive[UNREST] < drive.unrest and state.drive[GREATEST] >= 2.1e7
+
+
+def test_rise_is_even_below_omega_1():
+    drive = quasi_static("prescribed", omega_1=1e8, pace=0.01)
+    assert rise(drive, 2e8) == pytest.approx(0.01 * 4e16)
+    assert rise(drive, 0.5e8) * 0.5e8 == pytest.approx(rise(drive, 0.99e8) * 0.99e8, rel=1e-12)
+    assert np.isfinite(rise(drive, 0.0)) and rise(drive, 0.0) == rise(drive, 1e7)
+
+
+def test_what_fails_is_made_again_with_smaller_steps(grain, monkeypatch):
+    real = runs.go_on
+    tried = []
+
+    def fail_once(state, law, drive, box, integrator, goal):
+        tried.append(integrator.displacement)
+        if len(tried) == 20:
+            state.monomer[:] = math.nan
+            raise RuntimeError("a velocity is no finite number")
+        return real(state, law, drive, box, integrator, goal)
+
+    monkeypatch.setattr(runs, "go_on", fail_once)
+    run = spin_up(grain, pace=0.05, max_steps=4000)
+    assert run.attrs["smaller_steps"] == 1
+    assert tried[20] == pytest.approx(runs.SMALLER * tried[19]) and tried[21] == tried[0]
+    assert np.isfinite(run.mass).all()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"drive": "radiation"}, "allowed are prescribed, torque, literal"),
+        ({"drive": "torque", "epsilon": 0.1}, "knows stretch only"),
+        ({"stretch": 1e-14, "epsilon": 0.1}, "does not wait"),
+        ({"drive": "literal", "stretch": 1e-14}, "drive literal, which does not wait"),
+        ({"pace": -1.0}, "pace is -1.0"),
+        ({"drag": 0.0}, "drag is 0.0"),
+    ],
+)
+def test_bad_input_gets_a_sentence(grain, wrong, words):
+    with pytest.raises(InputError, match=words):
+        spin_up(grain, **wrong)

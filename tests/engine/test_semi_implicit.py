@@ -1,0 +1,169 @@
+"""The semi-implicit step: its matrix, what it keeps, and what it shares with the explicit one."""
+
+import numpy as np
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.drives.free import free, rest
+from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, STEPS, VX, WX, X
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.semi_implicit import RUNG, _work, make_matrix, rung_below, semi_implicit, weigh
+from ratd.engine.state import contact_field, copied, monomer_rows, new_state
+from ratd.engine.step import run, until
+from ratd.geometry.box import open_space, touching_pairs
+from ratd.laws import jkr
+from ratd.laws.contact_fields import NCX, NCY, NCZ
+from ratd.observables.energy import kinetic, momenta
+from systems import tree
+
+N = 12
+LAW, BOX = jkr(), open_space()
+
+
+def cluster(speed=0.0, integrator=None, law=LAW):
+    rng = np.random.default_rng(8)
+    radius = rng.uniform(12e-9, 60e-9, N)
+    position = tree(radius, "q-S", 5)
+    motion = rng.normal(size=(2, N, 3)) * np.array([speed, speed / 30e-9])[:, None, None]
+    contacts = touching_pairs(position, radius, BOX)
+    return new_state(
+        position, radius, MATERIALS["q-S"], contacts, law, BOX, integrator or leapfrog(),
+        velocity=motion[0], spin=motion[1],
+    )  # fmt: skip
+
+
+def dense_matrix(state, theta, dt):
+    """M' of velocities and spins, contact by contact from the definition of J."""
+    rows = monomer_rows(state)
+    n = len(rows)
+    matrix = np.zeros((6 * n, 6 * n))
+    for k in range(n):
+        m, a = rows[k, MASS], rows[k, RADIUS]
+        matrix[6 * k : 6 * k + 6, 6 * k : 6 * k + 6] = np.diag([m] * 3 + [0.4 * m * a**2] * 3)
+    normals = np.array([contact_field(state, field) for field in (NCX, NCY, NCZ)]).T
+    for k in range(state.counter[CONTACTS]):
+        i, j = int(state.pair_i[k]), int(state.pair_j[k])
+        normal = normals[k]
+        distance = np.linalg.norm(rows[i, X : X + 3] - rows[j, X : X + 3])
+        a_i, a_j = rows[i, RADIUS], rows[j, RADIUS]
+        arm = distance / (a_i + a_j)
+        cross = np.array([[0, -normal[2], normal[1]], [normal[2], 0, -normal[0]], [-normal[1], normal[0], 0]])
+        slide, turn = np.zeros((3, 6 * n)), np.zeros((3, 6 * n))
+        for who, sign, a in ((i, 1.0, a_i), (j, -1.0, a_j)):
+            slide[:, 6 * who : 6 * who + 3] = sign * np.eye(3)
+            slide[:, 6 * who + 3 : 6 * who + 6] = arm * a * cross
+            turn[:, 6 * who + 3 : 6 * who + 6] = sign * np.eye(3)
+        at = np.uint64(k)  # in the first block
+        k_n, k_s, k_r, k_t = LAW.stiffness(state.contact, at)
+        along = np.outer(normal, normal)
+        across = np.eye(3) - along
+        damping = LAW.damping_now(state.contact, at)
+        for j_c, weight in (
+            (slide, (theta * dt**2 * k_n + dt * damping) * along + theta * dt**2 * k_s * across),
+            (turn, theta * dt**2 * (k_r * across + k_t * along)),
+        ):
+            matrix += j_c.T @ weight @ j_c
+    return matrix
+
+
+def test_forces_are_weighed_by_the_matrix_of_the_contacts():
+    state = cluster()
+    theta, dt = 0.5, 3e-11
+    work = _work(state, LAW)
+    make_matrix(state, LAW, BOX, theta, dt, work)
+    rng = np.random.default_rng(3)
+    rows = monomer_rows(state)
+    force = state.force.reshape(-1, FORCE_ROW)[:N]
+    pulls = rng.normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
+    force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
+    weigh(state, 0.0, work)
+    expected = np.linalg.solve(dense_matrix(state, theta, dt), pulls.ravel()).reshape(N, 6)
+    np.testing.assert_allclose(force[:, 0:3] / rows[:, MASS, None], expected[:, :3], rtol=1e-7)
+    inertia = 0.4 * rows[:, MASS] * rows[:, RADIUS] ** 2
+    np.testing.assert_allclose(force[:, 4:7] / inertia[:, None], expected[:, 3:], rtol=1e-7)
+
+
+def test_rigid_motion_has_its_true_mass_and_is_not_calmed():
+    state = cluster()
+    work = _work(state, LAW)
+    make_matrix(state, LAW, BOX, 0.5, 1e-10, work)
+    rows = monomer_rows(state)
+    rng = np.random.default_rng(0)
+    shift, turn = rng.normal(size=3), rng.normal(size=3) * 1e7
+    rows[:, VX : VX + 3] = shift + np.cross(turn, rows[:, X : X + 3])
+    rows[:, WX : WX + 3] = turn
+    force = state.force.reshape(-1, FORCE_ROW)[:N]
+    force[:] = 0.0
+    weigh(state, 1e9, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
+    limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
+    assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
+
+
+@pytest.mark.parametrize("calming", [0.0, 0.2])
+def test_momenta(calming):
+    """Momentum is kept; angular momentum but for the half step and the angle by which the matrix lags."""
+    integrator = semi_implicit(longest=1e-10, calming=calming)
+    state = cluster(0.1, integrator)
+    before = momenta(state)
+    state, _ = run(state, LAW, free(), BOX, integrator, until(steps=2000))
+    change = np.abs(momenta(state) - before).max(axis=1) / np.abs(before).max(axis=1)
+    assert change[0] < 1e-11
+    assert change[1] < 0.1
+
+
+def test_long_steps_are_stable_where_explicit_ones_are_not():
+    undamped = jkr(damping="none")
+    integrator = semi_implicit(longest=4e-10, displacement=1.0, travel=1.0)
+    state = cluster(1e-4, integrator, undamped)
+    explicit_limit = cluster(0.0, leapfrog(timestep_factor=1.0), undamped).scalar[DT]
+    state.scalar[DT] = integrator.longest
+    assert integrator.longest > 5 * explicit_limit
+    energies = []
+    for goal in range(1000, 20001, 1000):
+        state, _ = run(state, undamped, free(), BOX, integrator, until(steps=goal))
+        energies.append(sum(kinetic(state, 0.0, False)))
+    assert state.scalar[DT] == integrator.longest
+    assert max(energies[10:]) < 3 * max(energies[:10])
+
+
+def test_short_steps_move_as_explicit_ones_do():
+    start = cluster(0.5)
+    dt = 0.01 * start.scalar[DT] / 0.125
+    ends = []
+    for integrator in (
+        leapfrog(timestep=dt, damping="explicit"),
+        semi_implicit(longest=dt, displacement=1.0, travel=1.0),
+    ):
+        state = copied(start)
+        state.scalar[DT] = dt
+        state, _ = run(state, LAW, free(), BOX, integrator, until(steps=500))
+        ends.append(monomer_rows(state)[:, X : X + 3] - monomer_rows(start)[:, X : X + 3])
+    moved = np.abs(ends[0]).max()
+    assert np.abs(ends[0] - ends[1]).max() < 5e-3 * moved
+
+
+def test_it_comes_to_rest_where_the_explicit_step_does():
+    ends = []
+    for integrator, steps in ((leapfrog(), 60000), (semi_implicit(longest=1e-9, calming=0.1), 4000)):
+        state = cluster(0.01, integrator)
+        state, _ = run(state, LAW, rest(1e8), BOX, integrator, until(steps=steps))
+        rows = monomer_rows(state)
+        assert np.abs(rows[:, VX : VX + 3]).max() < 1e-3
+        i, j = state.pair_i[: N - 1].astype(int), state.pair_j[: N - 1].astype(int)
+        ends.append(np.linalg.norm(rows[i, X : X + 3] - rows[j, X : X + 3], axis=1))
+    np.testing.assert_allclose(ends[1], ends[0], atol=2e-12)
+
+
+def test_steps_are_rungs_of_a_ladder():
+    for step in (1e-9, 0.9e-9, 3e-11, 1e-13):
+        found = rung_below(1e-9, step)
+        assert found <= step * (1 + 1e-9) and found > RUNG * step * (1 - 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"), [({"longest": 0.0}, "longest is 0.0"), ({"theta": 0.1}, "theta"), ({"calming": 1.0}, "calming")]
+)
+def test_bad_options_get_a_sentence(wrong, words):
+    with pytest.raises(InputError, match=words):
+        semi_implicit(**({"longest": 1e-9} | wrong))
