@@ -2,6 +2,8 @@
 #
 #     snakemake --cores 2                                      the full paper
 #     snakemake --cores 2 --configfile config/quick.yaml       minutes
+#     snakemake --cores 2 compression                          another experiment: its own target, its own configs
+#     snakemake --cores 2 collision                            collisions of clusters
 #
 # Settings of Snakemake itself are in profiles/default, which it finds by its name; keys of the config in
 # config/README.md.
@@ -12,6 +14,8 @@ include: "workflow/rules/common.smk"
 
 configfile: "config/config.yaml"
 configfile: "config/spin_up.yaml"
+configfile: "config/compression.yaml"
+configfile: "config/collision.yaml"
 
 
 pathvars:
@@ -24,6 +28,9 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/aggregates.smk"
 include: "workflow/rules/spin_up.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/compression.smk"
+include: "workflow/rules/collision.smk"
+include: "workflow/rules/collision_document.smk"
 include: "workflow/rules/validation.smk"
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from ratd.base.materials import get_material
-from ratd.engine.forces import contact_forces
+from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.layout import CONTACTS, DT_DRIFT, FORCE_ROW, MONOMERS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_blocks, copied, monomer_rows, new_state
-from ratd.laws.contact_fields import LANES, SCRATCH_SIZE
+from ratd.laws.contact_fields import LANES
 
 EXPLICIT = leapfrog(damping="explicit")
 
@@ -94,7 +94,7 @@ def forces(state, law, box, dt_drift=0.0, dt=0.0):
     """Forces and torques on the monomers, (n, 3) each, contacts being advanced by `dt_drift`."""
     state.scalar[DT_DRIFT] = dt_drift
     state.force[:] = 0.0
-    contact_forces(state, law, box, np.zeros(SCRATCH_SIZE), dt)
+    contact_forces(state, law, box, working_space(), dt)
     rows = state.force.reshape(-1, FORCE_ROW)[: state.counter[MONOMERS]].copy()
     state.force[:] = 0.0
     return rows[:, :3], rows[:, 4:7]

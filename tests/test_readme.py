@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import pandas as pd
 import pytest
 
 import ratd
@@ -18,7 +19,7 @@ def code(section, start, end):
 
 def test_one_grain_and_two_that_meet():
     """With a grain that takes a second, and without the last line of the first, whose spin-up may take long."""
-    lines = code("From Python", "one grain:", "Any spheres")
+    lines = code("From Python", "one grain:", "One cluster")
     assert "ratd.spin_up(own" in lines[-1] and "200e-9" in "".join(lines)
     own = ratd.grow("BA", 60e-9, "q-S", 0)
     names = {"position": own.position, "radius": own.radius}
@@ -33,3 +34,27 @@ def test_one_grain_and_two_that_meet():
     meeting = names["run"]
     assert meeting["n_pieces"][0] == 2
     assert abs(meeting["residual"][-1]) < 0.03 * meeting["kinetic_translation"][0]
+
+
+def test_a_cluster_that_is_compressed_and_pulled():
+    """With one that takes a second."""
+    lines = code("From Python", "and pulled again:", "Own aggregates")
+    names = {"ratd": ratd}
+    for as_written, small in (("1024", "64"), ("strain_rate=1e-5", "strain_rate=3e-5")):
+        lines = [line.replace(as_written, small) for line in lines]
+    exec("\n".join(lines), names)
+    assert names["run"]["phi"][-1] == pytest.approx(0.3, rel=1e-3)
+    assert names["pulled"].attrs["tensile_strength"] > 0.0
+
+
+def test_two_clusters_that_collide():
+    """With fewer spheres for a shorter time."""
+    lines = code("Collisions", "From Python:", "Both clusters")
+    small = "[0.4e-6, 0.3e-6, 0.3e-6, 0.2e-6]"
+    text = "\n".join(lines).replace("ratd.mrn(5000, seed=1), radius=4e-6", f"{small}, radius=1.2e-6")
+    text = text.replace('law="dmt")', 'law="dmt", duration=2e-7)')
+    assert small in text and "duration" in text
+    names = {"ratd": ratd, "table": pd.DataFrame({"velocity": [1.0, 2.0], "X": [0.3, 0.0]})}
+    exec(text, names)
+    assert names["pieces"]["piece_members"].values.sum() == 8 and names["run"].sizes["snapshot"] == 31
+    assert ratd.fragmentation_velocity(names["table"])["velocity"] == pytest.approx(1.5)

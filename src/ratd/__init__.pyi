@@ -19,6 +19,43 @@ from ratd.base.materials import Material as Material
 __version__: str
 MATERIALS: dict[str, Material]
 
+def build_cluster(
+    radii: ArrayLike, radius: float, material: str | Material = "silica", *, second_contact: float = 0.0, seed: int = 0
+) -> Grain: ...
+def collide(
+    a: Grain,
+    b: Grain,
+    velocity: float,
+    impact_parameter: float = 0.0,
+    seed: int = 0,
+    law: Any = "dmt",
+    *,
+    duration: float = 3e-06,
+    timestep: float | None = None,
+    gap: float = 2e-08,
+    records: int = 150,
+    snapshot_every: int = 5,
+    relaxed: bool = False,
+    checkpoint: str | Path | None = None,
+    progress: Callable[..., object] | None = None,
+) -> xr.Dataset: ...
+def compress(
+    cluster: Any,
+    strain_rate: float = 1e-06,
+    until_phi: float = 0.5,
+    *,
+    material: str | Material | None = None,
+    law: Any = None,
+    timestep_factor: float = 0.14,
+    integrator: Any = None,
+    box_length: float | None = None,
+    scheme: Literal["homogeneous", "as_printed"] = "homogeneous",
+    snapshots: Sequence[float] = (0.003, 0.01, 0.03, 0.1, 0.3),
+    balance: bool = True,
+    checkpoint: str | Path | None = None,
+    progress: Callable[..., object] | None = None,
+) -> xr.Dataset: ...
+def compressive_strength(run: Any, low: float = 0.03, high: float = 0.12) -> dict[str, float]: ...
 def cut_bound(grain: Grain, axis: ArrayLike | None = None, *, directions: int = 500) -> float: ...
 def disruption(run: xr.Dataset) -> xr.Dataset: ...
 def evolve(
@@ -37,6 +74,7 @@ def evolve(
     drag: float = 0.0,
     contacts: ArrayLike | None = None,
     records: int = 100,
+    snapshot_every: int = 0,
     balance: float | None = 0.05,
     checkpoint: str | Path | None = None,
     progress: Callable[[float, float, list[float]], object] | None = None,
@@ -51,6 +89,8 @@ def fit_ensemble(
     seed: int = 0,
     materials: Mapping[str, Material] | None = None,
 ) -> xr.Dataset: ...
+def fragmentation(run: xr.Dataset) -> Any: ...
+def fragmentation_velocity(table: pd.DataFrame, *, limit: float = 0.15, samples: int = 1000, seed: int = 0) -> Any: ...
 def grow(
     type: Literal["BA", "BAM1", "BAM2"],
     a_eff: float,
@@ -60,7 +100,25 @@ def grow(
     distribution: RadiusDistribution | None = None,
     migration: Literal["random", "nearest"] = "random",
 ) -> Grain: ...
+def grow_bcca(
+    n: int,
+    material: str | Material = "ice",
+    seed: int = 0,
+    *,
+    radius: float | None = None,
+    radii: Any = None,
+    copies: bool = False,
+) -> Grain: ...
 def mix(name: str, fractions: Mapping[str, float], table: Mapping[str, Material] | None = None) -> Material: ...
+def mrn(
+    n: int,
+    seed: int,
+    *,
+    smallest: float = 5e-08,
+    largest: float = 2.5e-06,
+    mass_within: float | None = 0.02,
+    length_within: float | None = 0.05,
+) -> Any: ...
 def open_space() -> Any: ...
 def periodic(
     length: float | ArrayLike,
@@ -90,4 +148,15 @@ def spin_up(
     checkpoint: str | Path | None = None,
     progress: Callable[[float, float, float, int], object] | None = None,
 ) -> xr.Dataset: ...
+def stretch(
+    compressed: Any,
+    strain_rate: float = 3e-06,
+    *,
+    axes: Literal["x", "xyz"] = "x",
+    law: Any = None,
+    timestep_factor: float = 0.14,
+    integrator: Any = None,
+    checkpoint: str | Path | None = None,
+    progress: Callable[..., object] | None = None,
+) -> Any: ...
 def write_particles(content: Grain | Particles | xr.Dataset, path: str | Path, unit: str = "nm") -> None: ...

@@ -32,7 +32,7 @@ def pair(a_i, a_j, material="q-S"):
 
 
 def parting_omega(a_i, a_j, material="q-S"):
-    """Where the centrifugal force is the pull-off force: m_red omega^2 (a_i + a_j) = 3 pi gamma R (force-controlled)."""
+    """Where the centrifugal force is the pull-off force: m_red omega^2 (a_i + a_j) = 3 pi gamma R."""
     material = MATERIALS[material]
     m_i, m_j = (4 / 3 * math.pi * a**3 * material.density for a in (a_i, a_j))
     pull = 3 * math.pi * material.surface_energy * a_i * a_j / (a_i + a_j)
@@ -61,7 +61,7 @@ def test_run_tells_how_it_was_made(run):
     attrs = run.attrs
     assert attrs["spin_up_law"] == "quasi-static" and attrs["integrator"] == "semi-implicit"
     assert attrs["stretch"] == 5e-14 and attrs["smaller_steps"] == 0 and math.isnan(attrs["epsilon"])
-    assert (np.diff(run.omega) > 0).all() and (np.diff(run.steps) > 0).all()
+    assert (np.diff(run.omega) > 0).all() and (np.diff(run.steps_so_far) > 0).all()
     np.testing.assert_array_equal(run.omega, run.frame_omega)
 
 

@@ -6,7 +6,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free, rest
-from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, STEPS, VX, WX, X
+from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import RUNG, _work, make_matrix, rung_below, semi_implicit, weigh
 from ratd.engine.state import contact_field, copied, monomer_rows, new_state

@@ -417,7 +417,7 @@ def test_plan_names_every_piece_once():
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
-            "forces", "lammps", "relaxation",
+            "forces", "lammps", "relaxation", "compression", "quasi_static",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and kinds.kind_of(f"validation_{check}")
@@ -430,9 +430,8 @@ def test_plan_names_every_piece_once():
         "production_timestep_factor": TIMESTEP_FACTOR, "material": "co-S", "epsilon_large": None, "type": "BAM1",
         "a_eff": pytest.approx(450e-9), "seed": 2,
     }  # fmt: skip
-    for check in ("theory", "energy"):
-        for piece in plan.pieces["full"][check].values():
-            assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)
+    for piece in plan.pieces["full"]["energy"].values():
+        assert (piece["epsilon"], piece["timestep_factor"]) == (EPSILON[piece["type"]], TIMESTEP_FACTOR)
     printed = plan.pieces["full"]["literal"]
     assert len({(piece["type"], piece["a_eff"], piece["seed"]) for piece in printed.values()}) == len(printed) >= 8
 

@@ -73,7 +73,7 @@ def test_files_tell_what_they_were_made_with(finished):
     grains = io.read(finished.folder / GRAINS, "grains")
     runs = io.read(finished.folder / RUNS, "spinup")
     assert runs.attrs["input_hash"] == file_hash(finished.folder / GRAINS)
-    assert '"epsilon":0.2' in runs.attrs["settings"] and "epsilon" not in grains.attrs["settings"]
+    assert '"stretch":1e-12' in runs.attrs["settings"] and "stretch" not in grains.attrs["settings"]
     assert grains["seed"].values.tolist() == runs["seed"].values.tolist() == list(range(6))
     snapshots = [run.sizes.get("snapshot", 0) > 0 for run in run_files.runs(runs)]
     assert snapshots == [seed == 1 for seed in range(6)]
@@ -148,7 +148,7 @@ def test_change_of_a_script_reruns_all_that_it_makes(copy_of):
     ("change", "rerun"),
     [
         ({"figures": TINY["figures"] | {"figure6": None}}, set()),
-        ({"run": {"epsilon": 0.3}}, {"spin_up", "disrupt", "ensemble"} | FIGURES),
+        ({"run": {"stretch": 2e-12}}, {"spin_up", "disrupt", "ensemble"} | FIGURES),
         ({"ensemble": {"bootstrap": 30}}, {"ensemble"} | FIGURES - OF_RUNS),
         ({"seeds": {"first": 0, "number": 7}}, {"grow", "spin_up", "disrupt", "ensemble"} | FIGURES - OF_SNAPSHOTS),
     ],
@@ -232,7 +232,7 @@ def test_a_file_of_other_grains_in_the_place_of_an_input_is_refused(copy_of):
 def test_results_copied_elsewhere_are_used_if_they_are_what_the_plan_makes(copy_of):
     shutil.rmtree(copy_of.folder / ".snakemake")
     assert copy_of.planned() == {}
-    copy_of.write_config(TINY | {"run": {"epsilon": 0.3}, "figures": TINY["figures"] | {"figure6": None}})
+    copy_of.write_config(TINY | {"run": {"stretch": 2e-12}, "figures": TINY["figures"] | {"figure6": None}})
     done = copy_of.run("--dry-run")
     assert done.returncode != 0
     *_, last = done.stdout.splitlines()

@@ -1,11 +1,13 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
 import atexit
+import re
 import sys
 from pathlib import Path
 
 from snakemake.utils import min_version
 
 from ratd.base.errors import InputError
+from ratd.experiments.collision.plan import check as collision_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
 from ratd.pipeline import first_error, jobs, unrecorded
 from ratd.pipeline.config import read_yaml
@@ -66,5 +68,10 @@ def say(notes):
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.
-for path in ("config/config.yaml", "config/spin_up.yaml"):
+for path in (
+    "config/config.yaml",
+    "config/spin_up.yaml",
+    "config/compression.yaml",
+    "config/collision.yaml",
+):
     checked(read_yaml, path)

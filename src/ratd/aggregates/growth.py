@@ -73,8 +73,8 @@ def grow(type, a_eff, material, seed, *, distribution=None, migration="random"):
     distribution = RadiusDistribution() if distribution is None else distribution
     migrations = TYPES[_check_type(type)]
     a_eff = _check_a_eff(a_eff, type, distribution)
-    seed = _check_seed(seed)
-    radii_seed, place_seed = _seed_sequence(material.name, type, round(a_eff / 1e-12), seed).spawn(2)
+    seed = check_seed(seed)
+    radii_seed, place_seed = seed_sequence(material.name, type, round(a_eff / 1e-12), seed).spawn(2)
     radius = draw_radii(a_eff, migrations + 2, distribution, np.random.Generator(np.random.PCG64(radii_seed)))
     position = _place(radius, material, migrations, migration, place_seed)
     return Grain(position, radius, material, type=type, a_eff=a_eff, seed=seed)
@@ -122,11 +122,11 @@ def grow_with_radii(type, radii, material, seed, *, migration="random"):
     """
     material = get_material(material)
     migrations = TYPES[_check_type(type)]
-    seed = _check_seed(seed)
+    seed = check_seed(seed)
     radius = number_array(radii, "radii")
     if radius.ndim != 1 or len(radius) < 2 or not np.all(np.isfinite(radius) & (radius > 0.0)):
         raise InputError("radii must be a list of at least two finite numbers above 0 (in m).")
-    position = _place(radius, material, migrations, migration, _seed_sequence(material.name, type, "radii", seed))
+    position = _place(radius, material, migrations, migration, seed_sequence(material.name, type, "radii", seed))
     return Grain(position, radius, material, type=type, seed=seed)
 
 
@@ -140,7 +140,7 @@ def _place(radius, material, migrations, migration, seed):
     return position - centre_of_mass(position, radius**3)
 
 
-def _seed_sequence(*key):
+def seed_sequence(*key):
     """SeedSequence of any key, the same on every machine."""
     digest = hashlib.sha256("|".join(str(part) for part in key).encode()).digest()
     return np.random.SeedSequence(np.frombuffer(digest, dtype="<u4").tolist())
@@ -152,7 +152,7 @@ def _check_type(type):
     return type
 
 
-def _check_seed(seed):
+def check_seed(seed):
     if not (is_whole(seed) and 0 <= seed <= GREATEST_SEED):
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0 and at most {GREATEST_SEED}.")
     return int(seed)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 
-__all__ = ["RadiusDistribution", "draw_radii", "mrn_moment", "mrn_radii"]
+__all__ = ["RadiusDistribution", "draw_radii", "lognormal_radii", "mrn_moment", "mrn_radii"]
 
 _MOST_PATHS = 1_000_000
 """Sequences of radii that are tried before a_eff is said to be out of reach."""
@@ -228,6 +229,27 @@ def _cut_lognormal(mu, sigma, largest, rng):
         t = mu + sigma * math.sqrt(-2.0 * math.log(1.0 - rng.random())) * math.cos(2.0 * math.pi * rng.random())
         if 0.0 <= t <= high:
             return math.exp(t)
+
+
+def lognormal_radii(u, distribution):
+    """Radii of a cut lognormal distribution from uniform random numbers.
+
+    Parameters
+    ----------
+    u : array_like, shape (n,)
+        Between 0 and 1.
+    distribution : RadiusDistribution
+
+    Returns
+    -------
+    (n,) float64 array
+        The quantiles u [m].
+    """
+    normal = NormalDist()
+    ends = distribution.smallest, distribution.largest
+    low, high = (normal.cdf(math.log(end / distribution.median) / distribution.sigma_ln) for end in ends)
+    t = [normal.inv_cdf(low + float(each) * (high - low)) for each in u]
+    return np.clip(distribution.median * np.exp(distribution.sigma_ln * np.array(t)), *ends)
 
 
 def mrn_radii(u, smallest, largest):

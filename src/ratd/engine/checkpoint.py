@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ratd.engine.state import State
+from ratd.engine.state import State, copied
 
 
 def fingerprint(arrays, *settings):
@@ -40,7 +40,7 @@ def load(path, key):
         with np.load(path, allow_pickle=False) as file:
             if str(file["key"]) != key:
                 return None
-            state = State(**{name: file[name] for name in State._fields})
+            state = copied(State(**{name: file[name] for name in State._fields}))
             tables = {name[6:]: file[name] for name in file.files if name.startswith("table_")}
             return state, tables
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):

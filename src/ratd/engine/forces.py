@@ -7,9 +7,9 @@ all contacts of the block, sum forces and torques per monomer.
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.base.rows import add_forces, gather_differences, gather_sides
+from ratd.base.rows import EIGHT, add_forces, gather_differences, gather_sides
 from ratd.engine.layout import CONTACTS, DT_DRIFT, VIRIAL
-from ratd.laws.contact_fields import DX, FX, LANES, VECTOR, WIX
+from ratd.laws.contact_fields import DX, FX, LANES, SCRATCH_SIZE, VECTOR, WIX
 
 _LANES = np.uint64(LANES)
 
@@ -30,6 +30,14 @@ def _scatter(force, pair_i, pair_j, scratch, first, count):
 
 
 @jit
+def working_space():
+    """Working space of `contact_forces`, (SCRATCH_SIZE,), zeros, from the beginning of a line of the cache on."""
+    room = np.zeros(SCRATCH_SIZE + EIGHT)
+    begin = EIGHT - (np.int64(room.ctypes.data) // 8) % EIGHT
+    return room[begin : begin + SCRATCH_SIZE]
+
+
+@jit
 def contact_forces(state, law, box, scratch, dt):
     """Add the forces and torques of all contacts to `state.force`.
 
@@ -39,7 +47,7 @@ def contact_forces(state, law, box, scratch, dt):
         Contacts are advanced by the last move, `DT_DRIFT`.
     law, box : parts
     scratch : (SCRATCH_SIZE,) float64 array
-        Working space, zeros at first.
+        See `working_space`.
     dt : float
         Duration of the kick to come [s].
 

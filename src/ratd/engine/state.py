@@ -13,6 +13,9 @@ from ratd.engine.layout import (
 from ratd.laws.contact_fields import LANES, VECTOR
 from ratd.laws.material_pair import material_row
 
+LINE = 64
+"""Bytes of a line of the cache."""
+
 
 class State(NamedTuple):
     """Everything that a run is made of; saving these arrays and loading them again continues it bit by bit.
@@ -119,7 +122,7 @@ def new_state(position, radius, materials, contacts, law, box, integrator, *, ve
         material=np.array([material_row(material) for material in materials]),
     )
     state.counter[MONOMERS] = n
-    state = with_room(state, law, box, len(contacts) + 2 * n)
+    state = copied(with_room(state, law, box, len(contacts) + 2 * n))
     if len(contacts) == 0 and n > 1:
         _set_first_step(state, law, box, integrator)
     _append_all(state, law, box, _spread(_renumbered(np.asarray(contacts), order)))
@@ -181,10 +184,10 @@ def with_room(state, law, box, contacts):
     idle = np.uint64(len(state.identity))
     images = 3 * LANES if has_images(box) else 0
     grown = state._replace(
-        contact=np.concatenate([state.contact, np.zeros(more * law.n_fields() * LANES)]),
-        image=np.concatenate([state.image, np.zeros(more * images)]),
-        pair_i=np.concatenate([state.pair_i, np.full(more * LANES, idle)]),
-        pair_j=np.concatenate([state.pair_j, np.full(more * LANES, idle + np.uint64(1))]),
+        contact=aligned(np.concatenate([state.contact, np.zeros(more * law.n_fields() * LANES)])),
+        image=aligned(np.concatenate([state.image, np.zeros(more * images)])),
+        pair_i=aligned(np.concatenate([state.pair_i, np.full(more * LANES, idle)])),
+        pair_j=aligned(np.concatenate([state.pair_j, np.full(more * LANES, idle + np.uint64(1))])),
     )
     clear_contacts(grown, law, held * LANES, blocks * LANES)
     return grown
@@ -220,7 +223,20 @@ def come_to_rest(state):
 
 def copied(state):
     """The same state in arrays of its own."""
-    return State(*(array.copy() for array in state))
+    return State(*map(aligned, state))
+
+
+def aligned(array):
+    """A copy of an array that begins where a line of the cache does.
+
+    A vector of eight numbers then lies in one line. In arrays as numpy makes them it mostly lies in two, and a step
+    takes a seventh longer.
+    """
+    room = np.zeros(array.nbytes + LINE, dtype=np.uint8)
+    begin = -room.ctypes.data % LINE
+    copy = room[begin : begin + array.nbytes].view(array.dtype).reshape(array.shape)
+    copy[...] = array
+    return copy
 
 
 def _spread(contacts):

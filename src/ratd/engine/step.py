@@ -7,6 +7,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.engine.contacts import append_contact, contact_start, get_image, remove_contact, update_contact_rates
+from ratd.engine.forces import working_space
 from ratd.engine.layout import (
     CLOCK, CONTACTS, DT, DT_DRIFT, FASTEST, LARGEST_CONTACTS, SEARCHES, STEPS, TIME,
 )  # fmt: skip
@@ -25,7 +26,6 @@ from ratd.engine.lists import (
 )
 from ratd.engine.state import with_room
 from ratd.geometry.box import pairs_within
-from ratd.laws.contact_fields import SCRATCH_SIZE
 
 REACHED, FEW_CONTACTS, STEPS_DONE, FULL, NOT_FINITE = range(5)
 """Why `advance` returned: time or clock reached, few contacts left, number of steps reached, no room for a new contact,
@@ -80,7 +80,7 @@ def advance(state, law, drive, box, integrator, until):
     """
     scalar = state.scalar
     counter = state.counter
-    scratch = np.zeros(SCRATCH_SIZE)
+    scratch = working_space()
     mean, least, greatest = mean_radius(state)
     far_reach = FAR * mean
     near_reach = NEAR * mean

@@ -22,7 +22,7 @@ from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
 from ratd.pipeline.provenance import source_hash
 
-__all__ = ["evolve"]
+__all__ = ["columns", "evolve"]
 
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
@@ -64,6 +64,7 @@ def evolve(
     drag=0.0,
     contacts=None,
     records=100,
+    snapshot_every=0,
     balance=0.05,
     checkpoint=None,
     progress=None,
@@ -100,6 +101,8 @@ def evolve(
         not given. In a periodic box with their images, three integers n: X_i - X_j + n L is the difference.
     records : int
         Number of records after the start, evenly spaced in time.
+    snapshot_every : int
+        At every so many records, and at the last one, positions and pieces are kept; 0 for none.
     balance : float or None
         The run ends with an error when the balance of energy is off by more than this part of the greatest of the
         kinetic energy at the start, what was dissipated, and the work of the box. None for no check. With a drag there
@@ -107,13 +110,14 @@ def evolve(
     checkpoint : path-like, optional
         Where to keep what is needed to go on after a kill, with the same bits.
     progress : callable, optional
-        Called every few seconds as ``progress(part_done, seconds_to_go, dataset_row)``.
+        Called every few seconds as ``progress(part_done, seconds_to_go, row)``, the row being the last record
+        (`columns` gives its numbers by name).
 
     Returns
     -------
     xarray.Dataset
         Along ``record`` the time, energies, momenta, pieces (see `RECORDS`); along ``monomer``, in the order given, the
-        last positions (unwrapped), velocities, spins and pieces.
+        last positions (unwrapped), velocities, spins and pieces; along ``snapshot`` positions and pieces.
 
     Raises
     ------
@@ -135,11 +139,13 @@ def evolve(
         raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
     if not (is_number(records) and records >= 1 and records == int(records)):
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
+    if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
+        raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
     contacts = None if contacts is None else _contacts(contacts, len(radius))
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
-    settings = (materials, law, box, drive, integrator, float(duration), int(records))
+    settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
     # a run that one source has begun is not gone on with by another
@@ -147,29 +153,32 @@ def evolve(
     key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given, source)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
-        state, rows = loaded[0], list(loaded[1]["rows"])
+        state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])
     else:
         if contacts is None:
             contacts = touching_pairs(position, radius, box)
         how = {"velocity": velocity, "spin": spin, "kind": kind}
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
+        pictures = [_picture(state)] if snapshot_every else []
     start = saved = told = clock.monotonic()
     begun = len(rows)
     while len(rows) <= records:
         state, _ = run(state, law, drive, box, integrator, until(time=duration * len(rows) / records))
         rows.append(_row(state, law, box, rows[0]))
+        if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or len(rows) > records):
+            pictures.append(_picture(state))
         if balance is not None and not drag:
             _check_balance(rows, balance)
         now = clock.monotonic()
         if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
-            checkpoints.save(checkpoint, key, state, rows=rows)
+            checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
             saved = now
         if progress is not None and now - told > PROGRESS_INTERVAL:
             to_go = (now - start) * (records + 1 - len(rows)) / (len(rows) - begun)
             progress((len(rows) - 1) / records, to_go, rows[-1])
             told = now
-    return _dataset(state, rows, law, box)
+    return _dataset(state, rows, pictures, law, box)
 
 
 def _arrays(position, radius, velocity, spin):
@@ -236,7 +245,17 @@ def _row(state, law, box, first):
     return [*map(float, row), float(total)]
 
 
-def _columns(table):
+def _picture(state):
+    """Time, positions and pieces of all spheres in the order of the input, (n, 5)."""
+    back = np.argsort(state.identity)
+    table = np.empty((len(back), 5))
+    table[:, 0] = state.scalar[TIME]
+    table[:, 1:4] = monomer_rows(state)[back, X : X + 3]
+    table[:, 4] = pieces(state)[2][back]
+    return table
+
+
+def columns(table):
     """Name -> numbers of the rows, (rows, ...), as they stand in `RECORDS`."""
     values, column = {}, 0
     for name, (dims, _, _) in RECORDS.items():
@@ -248,7 +267,7 @@ def _columns(table):
 
 
 def _check_balance(rows, share):
-    values = _columns(np.array([rows[0], rows[-1]]))
+    values = columns(np.array([rows[0], rows[-1]]))
     at_start = values["kinetic_translation"][0] + values["kinetic_spin"][0]
     scale = max(at_start, values["dissipated"][1].sum(), abs(values["box_work"][1]))
     # what rounding leaves of energies that cancel
@@ -261,9 +280,9 @@ def _check_balance(rows, share):
         )
 
 
-def _dataset(state, rows, law, box):
+def _dataset(state, rows, pictures, law, box):
     variables = {}
-    for name, values in _columns(np.array(rows)).items():
+    for name, values in columns(np.array(rows)).items():
         dims, units, meaning = RECORDS[name]
         if name.startswith("n_"):
             values = values.astype("i8")
@@ -276,6 +295,14 @@ def _dataset(state, rows, law, box):
     variables["radius"] = ("monomer", rows[:, RADIUS].copy(), {"units": "m", "long_name": "radius"})
     piece = pieces(state)[2][back]
     variables["piece"] = ("monomer", piece, {"units": "1", "long_name": "number of the piece at the end"})
+    if pictures:
+        table = np.array(pictures)
+        about = {"units": "s", "long_name": "time of the snapshot"}
+        variables["snapshot_time"] = ("snapshot", table[:, 0, 0].copy(), about)
+        about = {"units": "m", "long_name": "position at the snapshot"}
+        variables["snapshot_position"] = (("snapshot", "monomer", "axis"), table[:, :, 1:4].copy(), about)
+        about = {"units": "1", "long_name": "number of the piece at the snapshot"}
+        variables["snapshot_piece"] = (("snapshot", "monomer"), table[:, :, 4].astype("i8"), about)
     coordinates = {
         "storage": list(STORED),
         "way": list(DISSIPATED),

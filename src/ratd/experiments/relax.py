@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.drives.free import free
 from ratd.engine.contacts import update_contact_rates
-from ratd.engine.forces import contact_forces
+from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import CONTACTS, DT_DRIFT, STEPS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
@@ -14,7 +14,7 @@ from ratd.engine.step import run, until
 from ratd.geometry.box import open_space
 from ratd.geometry.shape import principal_axes
 from ratd.laws.contact_constants import pull_off_force, reduced_radius
-from ratd.laws.contact_fields import A_I, A_J, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX, SCRATCH_SIZE
+from ratd.laws.contact_fields import A_I, A_J, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, LANES, NCX
 from ratd.laws.jkr_with_springs import jkr
 from ratd.laws.material_pair import SURFACE_ENERGY
 from ratd.observables.energy import kinetic
@@ -64,26 +64,37 @@ def relax(grain, *, law=None, timestep_factor=0.125):
     law = jkr() if law is None else law
     box, integrator = open_space(), leapfrog(timestep_factor=timestep_factor)
     state = new_state(grain.position, grain.radius, grain.material, grain.contacts, law, box, integrator)
+    state = find_rest(state, law, free(), box, integrator)
+    settle(state, law, integrator)
+    return state
+
+
+def find_rest(state, law, drive, box, integrator):
+    """State without motion in which no net force exceeds `RESIDUAL` times the least pull-off force.
+
+    Raises
+    ------
+    RuntimeError
+        If the aggregate does not come to rest.
+    """
     goal = residual_goal(state)
     energy = 0.0
+    begun = state.counter[STEPS]
     steps = 0
     while steps < LIMIT:
         residual = residual_force(state, law, box)
         if residual <= goal:
-            break
+            return state
         steps += round_length(steps)
-        state, _ = run(state, law, free(), box, integrator, until(steps=steps))
+        state, _ = run(state, law, drive, box, integrator, until(steps=begun + steps))
         before, energy = energy, sum(kinetic(state, 0.0, False))
         if energy <= before:
             come_to_rest(state)
             energy = 0.0
-    else:
-        raise RuntimeError(
-            f"the grain does not come to rest: the net force is not to exceed {goal:.2e} N on any monomer; it is "
-            f"{residual:.2e} N"
-        )
-    settle(state, law, integrator)
-    return state
+    raise RuntimeError(
+        f"the grain does not come to rest: the net force is not to exceed {goal:.2e} N on any monomer; it is "
+        f"{residual:.2e} N"
+    )
 
 
 def round_length(steps):
@@ -98,7 +109,7 @@ def round_length(steps):
 @jit
 def residual_force(state, law, box):
     """Greatest net force on any monomer [N] in a frame at rest; torques count as force times radius."""
-    scratch = np.zeros(SCRATCH_SIZE)
+    scratch = working_space()
     drift = state.scalar[DT_DRIFT]
     state.scalar[DT_DRIFT] = 0.0
     contact_forces(state, law, box, scratch, 0.0)
@@ -122,6 +133,12 @@ def settle(state, law, integrator):
     position, mass, radius = largest_fragment(state)
     _, axes = principal_axes(position, mass, radius)
     place(state, law, mass @ position / mass.sum(), axes[[1, 2, 0]])
+    start_anew(state, law, integrator)
+
+
+def start_anew(state, law, integrator):
+    """Make a state without motion the start of a run: nothing dissipated, time 0."""
+    come_to_rest(state)
     state.scalar[:] = 0.0
     state.drive[:] = 0.0
     state.counter[STEPS] = 0

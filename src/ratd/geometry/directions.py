@@ -4,7 +4,7 @@ import math
 
 from ratd.base.jit import jit
 
-__all__ = ["random_direction", "random_normal"]
+__all__ = ["normal_to", "random_direction", "random_normal"]
 
 
 @jit
@@ -17,9 +17,8 @@ def random_direction(rng):
 
 
 @jit
-def random_normal(x, y, z, rng):
-    """Unit vector uniformly distributed over the circle normal to the unit vector (x, y, z)."""
-    # The axis farthest from (x, y, z) makes a first normal, their cross product a second.
+def normal_to(x, y, z):
+    """A unit vector normal to the unit vector (x, y, z): to the axis farthest from it as well."""
     if abs(x) <= abs(y) and abs(x) <= abs(z):
         ux, uy, uz = 0.0, z, -y
     elif abs(y) <= abs(z):
@@ -27,7 +26,13 @@ def random_normal(x, y, z, rng):
     else:
         ux, uy, uz = y, -x, 0.0
     length = math.sqrt(ux * ux + uy * uy + uz * uz)
-    ux, uy, uz = ux / length, uy / length, uz / length
+    return ux / length, uy / length, uz / length
+
+
+@jit
+def random_normal(x, y, z, rng):
+    """Unit vector uniformly distributed over the circle normal to the unit vector (x, y, z)."""
+    ux, uy, uz = normal_to(x, y, z)
     vx, vy, vz = y * uz - z * uy, z * ux - x * uz, x * uy - y * ux
     angle = 2.0 * math.pi * rng.random()
     c, s = math.cos(angle), math.sin(angle)

@@ -4,13 +4,13 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.engine.contacts import contact_start
-from ratd.engine.forces import contact_forces
+from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.layout import (
     CONTACTS, DT_DRIFT, FORCE_ROW, FORCE_X, FORCE_Y, FORCE_Z, INERTIA, INV_INERTIA, INV_MASS, LOST_DAMP, MASS,
     MONOMERS, ROW, TORQUE_X, TORQUE_Y, TORQUE_Z, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.engine.state import copied
-from ratd.laws.contact_fields import E_DAMP, E_ROLL, E_SLIDE, E_TWIST, SCRATCH_SIZE
+from ratd.laws.contact_fields import E_DAMP, E_ROLL, E_SLIDE, E_TWIST
 
 STORED = ("normal", "sliding", "rolling", "twisting")
 """Ways in which contacts store energy."""
@@ -38,7 +38,7 @@ def in_step(state, law, box):
     state = copied(state)
     half = 0.5 * state.scalar[DT_DRIFT]
     state.force[:] = 0.0
-    contact_forces(state, law, box, np.zeros(SCRATCH_SIZE), half)
+    contact_forces(state, law, box, working_space(), half)
     _kick(state, half, box.rates())
     return state
 

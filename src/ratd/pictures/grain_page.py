@@ -1,9 +1,5 @@
-"""A page for the browser: one grain that is turned with the mouse and steps through its disruption.
+"""A page for the browser: one grain that is turned with the mouse and steps through its disruption."""
 
-k3d draws it and brings its own script, so the page holds all that it needs and loads nothing when it is opened.
-"""
-
-import re
 from html import escape
 from pathlib import Path
 from string import Template
@@ -25,16 +21,13 @@ from ratd.pictures.snapshots import (
     title_of,
 )
 from ratd.pictures.spheres import scale_length
+from ratd.pictures.stepper import OPENING, SPHERES, finished_page, scene, spheres
 from ratd.pictures.style import GREY
 
-FINENESS = 128
-"""Positions are rounded to 1 nm over this power of two, which leaves bits that compress well."""
-VIEW = np.array([0.75, -0.55, 0.37])
-"""Direction from the grain towards the viewer at the start; z is the axis of rotation."""
-OPENING = 30.0
-"""Angle of view of the camera from the lower to the upper edge [degrees]."""
-SPHERES, AXIS = 1, 2
-"""Numbers of the objects in the scene; k3d would take addresses in memory, which differ from run to run."""
+__all__ = ["OPENING", "SPHERES", "grain_page"]
+
+AXIS = 2
+"""Number of the axis of rotation in the scene, beside that of the spheres."""
 TEMPLATE = Path(__file__).with_name("grain_page.html")
 SCRIPT = Path(__file__).with_name("grain_page.js")
 
@@ -69,8 +62,13 @@ def grain_page(run, omega_disr, drive=None):
     reach = [np.max(np.linalg.norm(f.position[f.largest], axis=1) + f.radius[f.largest]) / NM for f in shown]
     half_width = min(max(reach), FARTHEST * reach[0])
     axis_length = scale_length(3 * half_width)
-    plot = _scene(half_width)
-    plot += _spheres(shown, scale, _steps(run, shown, omega_disr))
+    plot = scene(half_width)
+    colours = {
+        "fragment": [fragment_colours(frame.fragment) for frame in shown],
+        "force": [force_colours(frame.force, scale) for frame in shown],
+    }
+    steps = _steps(run, shown, omega_disr)
+    plot += spheres([frame.position for frame in shown], [frame.radius for frame in shown], steps, colours)
     plot += _axis(axis_length, half_width)
     title, drive_line = title_of(run, drive).split("\n")
     panel = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
@@ -81,12 +79,7 @@ def grain_page(run, omega_disr, drive=None):
         forces=", ".join(to_hex(FORCES(part)) for part in np.linspace(0, 1, 17)),
         greatest=f"{scale.vmax / 1e-9:.3g}",
     )
-    page = plot.get_snapshot(additional_js_code=SCRIPT.read_text(encoding="utf-8"))
-    # k3d's title holds the time, and its page has no room for controls of our own
-    head = f'<title>{escape(title)}</title>\n    <meta name="viewport" content="width=device-width, initial-scale=1">'
-    page = re.sub("<title>.*?</title>", lambda _: head, page, count=1, flags=re.DOTALL)
-    canvas = '<div id="canvasTarget"></div>'
-    return page.replace(canvas, panel + canvas, 1)
+    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"))
 
 
 def _steps(run, shown, omega_disr):
@@ -103,53 +96,9 @@ def _steps(run, shown, omega_disr):
     }
 
 
-def _spheres(shown, scale, steps):
-    """The monomers at all steps, with both ways to colour them, which the script of the page chooses from."""
-    colours = {
-        "fragment": _series(_packed(fragment_colours(frame.fragment)) for frame in shown),
-        "force": _series(_packed(force_colours(frame.force, scale)) for frame in shown),
-    }
-    spheres = k3d.points(
-        _series(np.float32(np.rint(frame.position / NM * FINENESS) / FINENESS) for frame in shown),
-        point_sizes=_series(np.float32(2 * frame.radius / NM) for frame in shown),
-        color=0xFFFFFF,  # by which those of the script are multiplied
-        shader="3d",
-        roughness=0.7,
-        custom_data={"steps": steps, "colours": colours},
-    )
-    spheres.id = SPHERES
-    return spheres
-
-
 def _axis(length, half_width):
     """Axis of rotation, a thin rod of some length [nm]."""
     ends = np.array([[0, 0, -0.5], [0, 0, 0.5]], np.float32) * length
     axis = k3d.line(ends, shader="mesh", width=0.006 * half_width, color=int(GREY[1:], 16))
     axis.id = AXIS
     return axis
-
-
-def _scene(half_width):
-    """Empty scene without k3d's own controls, seen so that `half_width` [nm] about the origin fits in."""
-    distance = 1.05 * half_width / np.sin(np.radians(OPENING / 2))
-    place = distance * VIEW / np.linalg.norm(VIEW)
-    return k3d.plot(
-        camera=[*place.tolist(), 0, 0, 0, 0, 0, 1],
-        camera_auto_fit=False,
-        camera_fov=OPENING,
-        grid_visible=False,
-        axes_helper=0,
-        menu_visibility=False,
-        time_interpolation=False,
-    )
-
-
-def _series(arrays):
-    """A time series of k3d, whose time is the number of the snapshot."""
-    return {str(step): array for step, array in enumerate(arrays)}
-
-
-def _packed(colours):
-    """Colours (n, 3), 0 to 1, as whole numbers 0xRRGGBB."""
-    red, green, blue = np.rint(255 * np.asarray(colours)).astype(np.uint32).T
-    return red << 16 | green << 8 | blue

@@ -42,19 +42,38 @@ def tables(schemas="config/schema"):
 def _rows(properties, layout, inside=""):
     """A row for each key, and after it for those within it."""
     for key, about in properties.items():
+        if about is True:  # another part of the schema says what it is
+            continue
         about = _whole(about, layout)
         allowed = " ".join(about.get("description", "").split())
         yield f"| `{inside}{key}` | {about.get('title', '')} | {allowed} |\n"
-        yield from _rows(about.get("properties", {}), layout, f"{inside}{key}.")
-        items = _whole(about.get("items", {}), layout)
-        yield from _rows(items.get("properties", {}), layout, f"{inside}{key}[].")
+        for within, sign in (("", "."), ("items", "[]."), ("additionalProperties", ".NAME.")):
+            part = about.get(within) if within else about
+            # what is only referred to, entry by entry, stands on the page where it is meant for all
+            if isinstance(part, dict) and not (within == "additionalProperties" and "$ref" in part):
+                yield from _rows(_properties(part, layout), layout, f"{inside}{key}{sign}")
+
+
+def _properties(about, layout):
+    """Keys of a mapping, those too that it has in one case or another."""
+    about = _whole(about, layout)
+    found = dict(about.get("properties", {}))
+    for case in ("then", "else"):
+        for key, part in about.get(case, {}).get("properties", {}).items():
+            if part is not True:
+                part = _whole(part, layout)
+                said = found.get(key, {}).get("description", part["description"])
+                both = said if said == part["description"] else f"{said}; or {part['description']}"
+                found[key] = part | found.get(key, {}) | {"description": both}
+    return found
 
 
 def _whole(about, layout):
     """What a schema says of a key, with what it refers to."""
-    if "$ref" not in about:
-        return about
-    return layout["$defs"][about["$ref"].rpartition("/")[2]] | about
+    for reference in (about, *about.get("allOf", ())):
+        if "$ref" in reference:
+            about = layout["$defs"][reference["$ref"].rpartition("/")[2]] | about
+    return about
 
 
 def page(text, schemas="config/schema"):

@@ -28,12 +28,20 @@ ROW = "row"
 HOMES = {
     "grains": "ratd.aggregates.files",
     **dict.fromkeys(("spinup", "disruption", "table", "cells", "fit", "fragments"), "ratd.experiments.spin_up.files"),
+    **dict.fromkeys(("clusters", "compression"), "ratd.experiments.compression.files"),
+    **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
+    "tension_set": "ratd.experiments.compression.pull",
     **dict.fromkeys(("table1", "table2"), "ratd.experiments.spin_up.composition"),
     "parameters": "ratd.experiments.spin_up.parameters",
     "calibration": "ratd.experiments.spin_up.calibration",
     "formulae": "ratd.experiments.spin_up.formulae",
     "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
+    **dict.fromkeys(("built_clusters", "collisions"), "ratd.experiments.collision.files"),
+    **dict.fromkeys(
+        ("collision_table", "collision_thresholds", "collision_clusters"), "ratd.experiments.collision.tables"
+    ),
+    "collision_likeness": "ratd.experiments.collision.likeness",
     **{
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (
@@ -43,6 +51,7 @@ HOMES = {
             "damping",
             "literal",
             "theory",
+            "compression",
             "growth",
             "relaxation",
             "energy",

@@ -202,7 +202,7 @@ def _texts(modules, files):
 
 def _beside(path):
     """Files of other types that have the name of a module and lie beside it: they belong to it."""
-    return [other for other in sorted(path.parent.glob(f"{path.stem}.*")) if other.suffix in (".html", ".js")]
+    return [other for other in sorted(path.parent.glob(f"{path.stem}.*")) if other.suffix in (".html", ".js", ".css")]
 
 
 def source_hash(script=None, modules=(), extra=(), root=_ROOT):

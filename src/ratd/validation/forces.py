@@ -7,7 +7,7 @@ import numpy as np
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.engine.contacts import contact_start
-from ratd.engine.forces import contact_forces
+from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.layout import FORCE_ROW
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_blocks, new_state
@@ -15,7 +15,7 @@ from ratd.experiments.evolve import evolve
 from ratd.experiments.spin_up.same_grains import first_step
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
-from ratd.laws.contact_fields import LANES, SCRATCH_SIZE
+from ratd.laws.contact_fields import LANES
 from ratd.laws.jkr_with_springs import K_ROLL, K_SLIDE, K_TWIST, NIX, NJX, PHI, PULL_OFF
 from ratd.laws.tangential import TWISTING_LIMIT
 from ratd.validation.energy_step import ELASTIC, NO_ROLLING_LIMIT
@@ -119,7 +119,7 @@ def state_of_contact(contact, material, only=None):
 def engine_forces(contact, material, mode):
     """Forces (2, 3) [N] and torques (2, 3) [N m] of one mode on both monomers."""
     state = state_of_contact(contact, material, mode)
-    contact_forces(state, ELASTIC, open_space(), np.zeros(SCRATCH_SIZE), 0.0)
+    contact_forces(state, ELASTIC, open_space(), working_space(), 0.0)
     rows = state.force.reshape(-1, FORCE_ROW)[np.argsort(state.identity)]
     return rows[:, :3], rows[:, 4:7]
 

@@ -138,6 +138,33 @@ def pair_coefficients(a_i, a_j, material):
     }
 
 
+def dmt_coefficients(a_i, a_j, material, damping_time):
+    """Coefficients of `pair_style granular` for two spheres by the law of DMT without friction.
+
+    Parameters
+    ----------
+    a_i, a_j : float
+        Radii [m].
+    material : ratd.Material
+    damping_time : float
+        A [s].
+
+    Returns
+    -------
+    dict of str to tuple of float
+        dmt: E [Pa], damping [1/(m s)], nu, gamma [J m-2].
+
+    Notes
+    -----
+    LAMMPS' viscoelastic damping is coefficient * m_red * a * d(delta)/dt with a^2 = delta R, here K A sqrt(delta)
+    d(delta)/dt: the coefficient is (2/3) Y/(1 - nu^2) A/m_red. Its friction is Coulomb-like, so it is left out.
+    """
+    m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
+    damping = 4.0 / 3.0 * material.reduced_modulus * damping_time * (m_i + m_j) / (m_i * m_j)
+    constants = (material.youngs_modulus, damping, material.poisson_number, material.surface_energy)
+    return {"dmt": constants, "tangential linear_nohistory": (0.0, 0.0)}
+
+
 def stable_step(radius, material, contacts, most):
     """Step [s] that explicit damping allows, at most `most`.
 
@@ -178,9 +205,11 @@ class Spheres:
         With a viscous time of 0 there is no damping.
     timestep : float
         [s]
+    coefficients : callable, optional
+        ``(a_i, a_j, material)`` -> coefficients of a pair; default `pair_coefficients`.
     """
 
-    def __init__(self, position, radius, material, timestep):
+    def __init__(self, position, radius, material, timestep, coefficients=pair_coefficients):
         radius = np.asarray(radius, dtype=float)
         n = len(radius)
         self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
@@ -193,7 +222,7 @@ class Spheres:
         self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
         self._say("pair_style granular")
         for i, j in combinations_with_replacement(range(n), 2):
-            words = pair_coefficients(radius[i], radius[j], material)
+            words = coefficients(radius[i], radius[j], material)
             models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
             self._say(f"pair_coeff {i + 1} {j + 1} {models}")
         self._say(_SETTINGS.format(skin=SKIN, timestep=timestep, one=max(2000, n), page=max(100_000, 10 * n)))
@@ -219,6 +248,14 @@ class Spheres:
         """Put the spheres elsewhere, keeping the contacts that they have, and compute the forces there."""
         self._atoms("x")[: self._n] = position
         self.advance(0)
+
+    def push(self, velocity):
+        """Set the velocities, (n, 3) [m/s]."""
+        self._atoms("v")[: self._n] = velocity
+
+    def velocity(self):
+        """Velocities, (n, 3) [m/s], a copy."""
+        return self._atoms("v")[: self._n].copy()
 
     def turn(self, omega):
         """Add a rigid rotation about z with `omega` [rad/s] to the velocities and spins."""

@@ -54,7 +54,7 @@ class Checks:
         InputError
             If the program that the check is against is missing: it is asked for before any job starts.
         """
-        if check == "lammps":
+        if check in ("lammps", "compression"):
             peer_lammps.load()
         return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
 
@@ -83,6 +83,7 @@ class Checks:
             "energy_step": self._free_grain,
             "frames": self._free_grain,
             "forces": self._forces,
+            "compression": self._compression,
             "lammps": self._lammps,
         }[check](own)
 
@@ -186,6 +187,10 @@ class Checks:
         shared = {key: value for key, value in own.items() if key not in ("materials", "size_nm")}
         shared["a_eff"] = own["size_nm"] * NM
         return {material: shared | {"material": material} for material in own["materials"]}
+
+    def _compression(self, own):
+        shared = {key: value for key, value in own.items() if key != "seeds"}
+        return {f"{own['material']}_{own['n']}_{seed}": shared | {"seed": seed} for seed in range(own["seeds"])}
 
     def _lammps(self, own):
         pairs = [[a * NM for a in pair] for pair in own["pairs_nm"]]

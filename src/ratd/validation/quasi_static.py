@@ -48,9 +48,9 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: stretch, unrest, pace, drag, drive, epsilon
-        (arguments of `ratd.spin_up`), longest, displacement, travel, calming (of the semi-implicit step), integrator,
-        moved (seeds of random shifts of the start).
+        material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: stretch, unrest, pace, drag, drive,
+        epsilon (arguments of `ratd.spin_up`), longest, displacement, travel, calming (of the semi-implicit step),
+        integrator, moved (seeds of random shifts of the start).
     progress : callable, optional
         Called with a sentence after each run.
 
@@ -102,7 +102,7 @@ def _spin(grain, vary, value):
             row[f"angular_momentum_{mark}"] = float(run.angular_momentum[before])
             row[f"axis_ratio_{mark}"] = float(run.axis_c[before] / run.axis_a[before])
             if mark == "mass_75":
-                row["steps_mass_75"] = int(run.steps[after[0]])
+                row["steps_mass_75"] = int(run.steps_so_far[after[0]])
     return row | {
         "outcome": run.attrs["end_reason"],
         "steps": run.attrs["steps"],

@@ -6,8 +6,8 @@ import pytest
 
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up.how import STRETCH, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, check, load
-from ratd.experiments.spin_up.how import EPSILON, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.seeds import size_label
 from ratd.pipeline import config as configs
 from ratd.pipeline.config import merge
@@ -117,9 +117,19 @@ def test_quick_is_three_of_each():
         ({"run": {"epsilon": {"BAM3": 0.1}}}, "the key 'BAM3' in spin_up.run.epsilon is unknown", "BA, BAM1, BAM2"),
         ({"literal": {"epsilon": {"BA": 0.1}, "angular_acceleration": None}, "drives": ["literal"]}, "BAM1", "null"),
         ({"run": None}, "spin_up.run is None", "a mapping"),
-        ({"run": {"angular_acceleration": 1e14}}, "run give {'epsilon': 0.02, 'angular", "null for the other"),
+        (
+            {"run": {"angular_acceleration": 1e14}},
+            "run give {'stretch': 2e-14, 'epsilon': None, 'angular",
+            "null for the others",
+        ),
         ({"drives": ["literal"], "literal": {"angular_acceleration": None}}, "run and literal together", "null"),
-        ({"drives": ["torque"]}, "drives[0] is 'torque'", "prescribed"),
+        ({"drives": ["radiation"]}, "drives[0] is 'radiation'", "torque"),
+        (
+            {"run": {"stretch": None, "epsilon": 0.1}, "drives": ["torque"]},
+            "for the drive torque",
+            "a number for stretch",
+        ),
+        ({"literal": {"stretch": 1e-14}, "drives": ["literal"]}, "for the drive literal", "null for stretch"),
         ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
         ({"snapshots": {"grains": [CELL]}}, "snapshots.grains[0].type is missing", "BA, BAM1"),
         ({"sizes_nm": [50, 50.0000000000001]}, "sizes_nm[1] is 50.0000000000001, which is the size 50", "different"),
@@ -353,7 +363,7 @@ def test_fewer_seeds_leave_the_jobs_of_other_cells_alone():
 
 def test_settings_hold_what_a_stage_depends_on_and_nothing_else():
     plan = load(*DEFAULT)
-    other = with_changes({"run": {"epsilon": 0.05}, "figures": {"figure6": {"sizes_nm": [50]}}})
+    other = with_changes({"run": {"stretch": 1e-14}, "figures": {"figure6": {"sizes_nm": [50]}}})
     assert other.grow("q-S", "BA", "50") == plan.grow("q-S", "BA", "50")
     assert other.spin_up("prescribed", "q-S", "BA", "50", "0-9") != plan.spin_up("prescribed", "q-S", "BA", "50", "0-9")
     assert other.ensemble("prescribed") == plan.ensemble("prescribed")
@@ -371,17 +381,17 @@ def test_settings_are_in_si_units():
 def test_drives_have_spin_up_laws_of_their_own():
     plan = with_changes({"drives": ["prescribed", "literal"]})
     prescribed, literal = (plan.spin_up(drive, "q-S", "BA", "50", "0-9") for drive in ("prescribed", "literal"))
-    assert (prescribed["epsilon"], prescribed["angular_acceleration"]) == (EPSILON["BA"], None)
+    assert (prescribed["stretch"], prescribed["epsilon"]) == (STRETCH, None)
     assert (literal["epsilon"], literal["angular_acceleration"]) == (None, 1.25e14)
     assert prescribed["records"] == literal["records"]
 
 
 def test_figure9_has_a_pace_of_its_own_for_each_drive():
-    own = {"epsilon": 0.03, "timestep_factor": 0.01, "literal": {"angular_acceleration": 3e13, "timestep_factor": 0.04}}
+    own = {"literal": {"angular_acceleration": 3e13, "timestep_factor": 0.04}}
     plan = with_changes({"drives": ["prescribed", "literal"], "figures": {"figure9": own}})
     laws = {drive: plan.parameters(drive, "BA", "100")[0]["spin_up"] for drive in ("prescribed", "literal")}
     names = ("epsilon", "angular_acceleration", "timestep_factor")
-    assert [laws["prescribed"][name] for name in names] == [0.03, None, 0.01]
+    assert [laws["prescribed"][name] for name in names] == [None, None, TIMESTEP_FACTOR]
     assert [laws["literal"][name] for name in names] == [None, 3e13, 0.04]
 
 
@@ -419,13 +429,16 @@ def test_a_run_of_the_calibration_may_have_seeds_and_an_end_of_its_own():
 
 
 def test_epsilon_is_one_for_all_types_or_one_for_each():
-    each, same = load(*DEFAULT), with_changes({"run": {"epsilon": 0.05}})
-    for kind, epsilon in EPSILON.items():
+    paces = {"BA": 0.02, "BAM1": 0.005, "BAM2": 0.01}
+    each, same = (with_changes({"run": {"stretch": None, "epsilon": value}}) for value in (paces, 0.05))
+    for kind, epsilon in paces.items():
         assert each.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == epsilon
         assert same.spin_up("prescribed", "q-S", kind, "50", "0-9")["epsilon"] == 0.05
-    assert each.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
+    default = load(*DEFAULT)
+    assert default.spin_up_of("prescribed")["timestep_factor"] == TIMESTEP_FACTOR
     assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1.25e+14 rad/s²"
-    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.005 (BAM2)"
+    assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.01 (BAM2)"
+    assert default.pace("prescribed") == "stretch = 2e-14 m"
 
 
 def test_snapshots_concern_the_block_of_the_grain_only():

@@ -13,7 +13,7 @@ from ratd.base.materials import MATERIALS
 from ratd.engine.layout import DT, VX
 from ratd.engine.state import contact_field, monomer_rows
 from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
-from ratd.experiments.spin_up import records
+from ratd.experiments.spin_up import how, records
 from ratd.experiments.spin_up import run as spinup
 from ratd.experiments.spin_up.records import edge_of_record
 from ratd.experiments.spin_up.run import spin_up
@@ -71,8 +71,8 @@ def test_literal_equations_turn_a_pair_by_its_spins_alone(monkeypatch):
     settings = dict(drive="literal", angular_acceleration=1e15, timestep_factor=0.02)
     exact = spin_up(grain, coriolis="exact", **settings)
     assert float(exact.omega[-1]) == pytest.approx(3.5 * bound, rel=0.03)
-    real = spinup.rotating
-    monkeypatch.setattr(spinup, "rotating", lambda *a, **k: real(*a, **k)._replace(spin_terms=True))
+    real = how.fast.rotating
+    monkeypatch.setattr(how.fast, "rotating", lambda *a, **k: real(*a, **k)._replace(spin_terms=True))
     whole = spin_up(grain, coriolis="exact", max_steps=3 * exact.attrs["steps"], **settings)
     assert whole.attrs["end_reason"] == "max_steps reached" and float(whole.omega[-1]) > 9 * bound
 

@@ -11,8 +11,7 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 __all__ = ["END_REASONS", "RUN_SETTINGS", "RUN_VALUES"]
 
 _NAN = ("axis_a", "axis_b", "axis_c", "porosity", "angular_momentum")
-"""Records that may be undefined: few monomers have no ellipsoid; a largest fragment that is new has no angular momentum
-before its first step."""
+"""Records that may be undefined: few monomers have no ellipsoid, and that of a new fragment is known a step later."""
 
 END_REASONS = ("one contact left", "omega_RAT reached", "max_steps reached")
 """Why a spin-up ended; the flag in a file is the place in this list."""
@@ -37,8 +36,8 @@ RUN_VALUES = {
 """Numbers of a run, one a grain: attributes of the dataset of a run, variables of the file of a block."""
 
 RUN_SETTINGS = (
-    "material", "type", "drive", "spin_up_law", "stretch", "unrest", "pace", "drag", "epsilon", "integrator", "displacement",
-    "coriolis", "damping", "timestep_factor",
+    "material", "type", "drive", "spin_up_law", "stretch", "unrest", "pace", "drag", "epsilon", "integrator",
+    "displacement", "coriolis", "damping", "timestep_factor",
 )  # fmt: skip
 """Attributes of the dataset of a run that are the same for all grains of a block: global attributes of its file."""
 

@@ -63,8 +63,8 @@ class How(NamedTuple):
 
 
 def how_to_turn(
-    kind, bound, *, drive="prescribed", stretch=None, pace=PACE, unrest=UNREST, drag=DRAG, epsilon=None, angular_acceleration=None,
-    coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
+    kind, bound, *, drive="prescribed", stretch=None, pace=PACE, unrest=UNREST, drag=DRAG, epsilon=None,
+    angular_acceleration=None, coriolis=None, timestep_factor=TIMESTEP_FACTOR, damping="implicit", integrator=None,
 ):  # fmt: skip
     """Drive and integrator from the words of a user, see `ratd.spin_up`.
 
@@ -85,6 +85,7 @@ def how_to_turn(
     """
     if drive not in DRIVES:
         raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
+    explicit = leapfrog(timestep_factor=timestep_factor, damping=damping)
     paced = epsilon is not None or angular_acceleration is not None
     if stretch is not None and (paced or drive == "literal"):
         raise InputError(
@@ -97,14 +98,7 @@ def how_to_turn(
             "quiet, and knows stretch only."
         )
     omega_1 = FIRST_LOSS * bound
-    nothing = {
-        "stretch": np.nan,
-        "unrest": np.nan,
-        "pace": np.nan,
-        "drag": np.nan,
-        "epsilon": np.nan,
-        "displacement": np.nan,
-    }
+    numbers = dict.fromkeys(("stretch", "unrest", "pace", "drag", "epsilon", "displacement"), np.nan)
     words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}
     if drive == "literal" or paced:
         if not paced:
@@ -112,13 +106,13 @@ def how_to_turn(
         motion = fast.rotating(
             drive, omega_1=omega_1, epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis
         )
-        integrator = integrator or leapfrog(timestep_factor=timestep_factor, damping=damping)
+        integrator = integrator or explicit
         words |= {
             "spin_up_law": fast.SPIN_UP_LAWS[motion.law],
             "coriolis": "explicit" if motion.explicit_coriolis else "exact",
             "angular_acceleration": motion.acceleration or motion.epsilon * motion.omega_1**2 / fast.SOFT_START,
         }
-        numbers = nothing | {"epsilon": np.nan if epsilon is None else float(epsilon)}
+        numbers["epsilon"] = np.nan if epsilon is None else float(epsilon)
     else:
         motion = slow.quasi_static(
             drive, omega_1=omega_1, stretch=STRETCH if stretch is None else stretch, pace=pace, unrest=unrest, drag=drag
@@ -129,12 +123,7 @@ def how_to_turn(
             "coriolis": "explicit",
             "angular_acceleration": slow.rise(motion, 0.0),
         }
-        numbers = nothing | {
-            "stretch": motion.stretch,
-            "unrest": motion.unrest,
-            "pace": motion.pace,
-            "drag": motion.drag,
-        }
+        numbers |= {name: getattr(motion, name) for name in ("stretch", "unrest", "pace", "drag")}
     numbers["displacement"] = float(getattr(integrator, "displacement", np.nan))
     words["integrator"] = "semi-implicit" if hasattr(integrator, "displacement") else "leapfrog"
     if words["integrator"] == "semi-implicit":

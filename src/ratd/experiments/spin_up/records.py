@@ -41,7 +41,7 @@ RECORDS = {
     "n_fragments_lost": ("1", "number of fragments lost so far", "i4"),
     "frame_omega": ("rad s-1", "angular velocity, which falls where a torque turns a grain that stretches", "f8"),
     "angular_momentum": ("kg m2 s-1", "angular momentum of the largest fragment about the axis", "f8"),
-    "steps": ("1", "time steps so far", "i8"),
+    "steps_so_far": ("1", "time steps so far", "i8"),
 }  # fmt: skip
 FRAGMENTS = {
     "fragment_mass": ("kg", "mass of a fragment that left"),

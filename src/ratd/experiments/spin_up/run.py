@@ -60,8 +60,8 @@ def spin_up(
         What rises: omega, or the angular momentum, from which omega follows (`ratd.drives.quasi_static`); or the
         equations as printed (`ratd.drives.rotating`).
     stretch : float, optional
-        The spin-up slows down as a contact is stretched or pressed in a step, and waits at so much [m]. The smaller, the
-        nearer to the limit of hours; `STRETCH` of `ratd.experiments.spin_up.how` when not given.
+        The spin-up slows down as a contact is stretched or pressed in a step, and waits at so much [m]. The smaller,
+        the nearer to the limit of hours; `STRETCH` of `ratd.experiments.spin_up.how` when not given.
     pace, unrest, drag : float
         (d omega/dt)/omega^2 of a grain at rest; q_0, the part of its rotation that the motion of the grain exceeds
         while the spin-up waits; decay of motion in the turning frame over omega.
@@ -109,9 +109,9 @@ def spin_up(
     """
     bound = cut_bound(grain) if isinstance(grain, Grain) else math.nan
     how = how_to_turn(
-        getattr(grain, "type", None), bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag, epsilon=epsilon,
-        angular_acceleration=angular_acceleration, coriolis=coriolis, timestep_factor=timestep_factor, damping=damping,
-        integrator=integrator,
+        getattr(grain, "type", None), bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag,
+        epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis,
+        timestep_factor=timestep_factor, damping=damping, integrator=integrator,
     )  # fmt: skip
     run = Run(grain, how, bound, law, max_steps, records, snapshot_every)
     if not run.load(checkpoint):

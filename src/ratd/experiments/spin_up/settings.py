@@ -81,7 +81,7 @@ class Settings(Cells):
         """How fast a drive spins up, in words, such as ``"epsilon = 0.01"``."""
         own = self.spin_up_of(drive)
         if own["stretch"] is not None:
-            return f"stretch = {own['pace']:g}"
+            return f"stretch = {own['stretch']:g} m"
         epsilon = own["epsilon"]
         if isinstance(epsilon, dict):
             return "epsilon = " + ", ".join(f"{epsilon[kind]:g} ({kind})" for kind in self.config["types"])

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import size_key
 
 __all__ = [
@@ -16,10 +17,8 @@ __all__ = [
     "eq27",
     "fractal_exponent",
     "midplane_bound",
-    "midplane_tension",
     "predictions",
     "tensile_strength_greenberg1995",
-    "tensile_strength_tatsuuma2019",
 ]
 
 SEIZINGER_2013 = (1.6, 1.9)
@@ -51,25 +50,6 @@ def eq27(a_eff, tensile_strength, density):
     for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (`midplane_bound`).
     """
     return 2.0 / np.asarray(a_eff) * np.sqrt(np.asarray(tensile_strength) / density)
-
-
-def tensile_strength_tatsuuma2019(surface_energy, monomer_radius, filling_factor):
-    """Tensile strength S = 0.951 gamma/a_mon phi^1.8 [Pa].
-
-    Parameters
-    ----------
-    surface_energy : float
-        gamma [J m-2].
-    monomer_radius : float
-        a_mon [m] (r_0 in the source: the radius of the monomers, not that of a contact).
-    filling_factor : float
-        phi [1].
-
-    Notes
-    -----
-    Tatsuuma, Kataoka & Tanaka 2019, ApJ 874, 159: a fit to pulled aggregates of equal monomers.
-    """
-    return 0.951 * surface_energy / monomer_radius * filling_factor**1.8
 
 
 def tensile_strength_greenberg1995(contacts_per_monomer, filling_factor, binding_energy, monomer_radius, overlap):
@@ -195,25 +175,6 @@ def _at_rest(cells, grown):
     found = groups[list(_DEPENDS_ON)].mean().reindex(wanted)
     found["fractal_dimension"] = groups["fractal_dimension"].median()
     return {name: found[name].to_numpy(float) for name in _DEPENDS_ON}
-
-
-def midplane_tension(omega, density, filling_factor, outer_radius):
-    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
-
-    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
-
-    Parameters
-    ----------
-    omega : float
-        Angular velocity [rad s-1].
-    density : float
-        rho [kg m-3] of the solid.
-    filling_factor : float
-        phi [1].
-    outer_radius : float
-        a_out [m].
-    """
-    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2
 
 
 def midplane_bound(grain):

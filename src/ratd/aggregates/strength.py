@@ -1,0 +1,121 @@
+"""Strengths of aggregates, as fitted by others to simulations and experiments, and the tension in a turning one."""
+
+import math
+
+import numpy as np
+
+from ratd.laws.contact_constants import rolling_energy
+
+__all__ = [
+    "PHI_MAX",
+    "compressive_strength_kataoka2013",
+    "compressive_strength_tatsuuma2023",
+    "filling_factor_guettler2009",
+    "midplane_tension",
+    "rolling_pressure",
+    "sound_speed_kataoka2013",
+    "tensile_strength_tatsuuma2019",
+]
+
+PHI_MAX = 0.74
+"""phi_max of Tatsuuma et al. (2023): close packing of equal spheres."""
+
+
+def rolling_pressure(surface_energy, critical_rolling_displacement, monomer_radius):
+    """P_0 = E_roll/r_0^3 [Pa], E_roll being the energy that rolling by a quarter of a circle costs.
+
+    Parameters
+    ----------
+    surface_energy : float
+        gamma [J m-2].
+    critical_rolling_displacement : float
+        xi_c [m].
+    monomer_radius : float
+        r_0 [m].
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Eqs. 1 and 25.
+    """
+    return rolling_energy(0.5 * monomer_radius, surface_energy, critical_rolling_displacement) / monomer_radius**3
+
+
+def compressive_strength_kataoka2013(filling_factor, rolling_pressure):
+    """P = P_0 phi^3 [Pa]; Kataoka et al. (2013), A&A 554, A4, Eq. 25, with P_0 of `rolling_pressure`."""
+    return rolling_pressure * np.asarray(filling_factor) ** 3
+
+
+def compressive_strength_tatsuuma2023(filling_factor, rolling_pressure, largest=PHI_MAX):
+    """P = P_0 (1/phi - 1/phi_max)^-3 [Pa], for high filling factors too.
+
+    References
+    ----------
+    Tatsuuma, Kataoka, Okuzumi & Tanaka (2023), ApJ 953, 6, as recalled.
+    """
+    return rolling_pressure / (1.0 / np.asarray(filling_factor) - 1.0 / largest) ** 3
+
+
+def sound_speed_kataoka2013(filling_factor, rolling_pressure, density):
+    """Effective speed of sound sqrt(P_0/rho_0) phi [m/s].
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Eq. 27, with the mass m_0 = 4/3 pi rho_0 r_0^3 where they have rho_0 r_0^3 in
+    between; Eq. 28 is the value with m_0.
+    """
+    return math.sqrt(rolling_pressure / (4.0 / 3.0 * math.pi * density)) * np.asarray(filling_factor)
+
+
+def filling_factor_guettler2009(pressure):
+    """Filling factor of compressed dust cakes of silica, phi = phi_2 - (phi_2 - phi_1)/(exp((lg P/P_m)/D) + 1).
+
+    Parameters
+    ----------
+    pressure : array_like
+        P [Pa].
+
+    Notes
+    -----
+    phi_1 = 0.12, phi_2 = 0.58, D = 0.58, P_m = 13 kPa, all as recalled (Guettler et al. 2009, ApJ 701, 130). At 300 Pa
+    this gives 0.146, where Kataoka et al. (2013) read 0.17 from it.
+    """
+    low, high, width, middle = 0.12, 0.58, 0.58, 13e3
+    return high - (high - low) / (np.exp(np.log10(np.asarray(pressure) / middle) / width) + 1.0)
+
+
+def tensile_strength_tatsuuma2019(surface_energy, monomer_radius, filling_factor):
+    """Tensile strength S = 0.951 gamma/a_mon phi^1.8 [Pa].
+
+    Parameters
+    ----------
+    surface_energy : float
+        gamma [J m-2].
+    monomer_radius : float
+        a_mon [m] (r_0 in the source: the radius of the monomers, not that of a contact).
+    filling_factor : float
+        phi [1].
+
+    Notes
+    -----
+    Tatsuuma, Kataoka & Tanaka 2019, ApJ 874, 159: a fit to pulled aggregates of equal monomers.
+    """
+    return 0.951 * surface_energy / monomer_radius * filling_factor**1.8
+
+
+def midplane_tension(omega, density, filling_factor, outer_radius):
+    """Mean tension across the plane through the axis of a turning porous sphere, rho phi omega^2 a_out^2/4 [Pa].
+
+    Half the sphere, of mass 2/3 pi rho phi a_out^3 with its centre of mass at 3/8 a_out, pulls at the area pi a_out^2.
+
+    Parameters
+    ----------
+    omega : float
+        Angular velocity [rad s-1].
+    density : float
+        rho [kg m-3] of the solid.
+    filling_factor : float
+        phi [1].
+    outer_radius : float
+        a_out [m].
+    """
+    return 0.25 * density * filling_factor * (omega * outer_radius) ** 2

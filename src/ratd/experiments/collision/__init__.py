@@ -1,0 +1,1 @@
+"""Collision: two clusters shot at each other, and what becomes of them."""

@@ -1,0 +1,206 @@
+"""docs/collision.md: the values of its slots and the claims of its sentences, from the files in docs/collision/data.
+
+A claim is something that a sentence of the document says and that further collisions may overturn. A test fails then,
+and somebody rereads the sentence.
+"""
+
+import numpy as np
+
+from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
+from ratd.base.units import NM
+from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.figures.scaling import WIDEST
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+from ratd.pipeline import io
+from ratd.experiments.collision.slots import fill
+
+__all__ = ["claims", "document", "values"]
+
+COLUMNS = (
+    "X", "N_s", "X_rest", "N_s_rest", "X_early", "N_s_early", "energy_half", "energy_end", "by_damping", "by_sliding",
+    "by_rolling", "by_twisting", "single_share", "largest_share", "joined", "potential_share",
+)  # fmt: skip
+
+
+def with_error(mean, error, digits=None):
+    """Such as "0.16 ± 0.03", as many decimals as make two digits of the error; the value alone without an error."""
+    if not np.isfinite(mean):
+        return "–"
+    if not (np.isfinite(error) and error > 0.0):
+        return f"{mean:.2f}" if digits is None else f"{mean:.{digits}f}"
+    if digits is None:
+        digits = min(3, max(0, 1 - int(np.floor(np.log10(error)))))
+    return f"{mean:.{digits}f} ± {error:.{digits}f}"
+
+
+def cell(table, law, cluster, velocity, impact=0.0):
+    """Collisions of one cell."""
+    same = (table["law"] == law) & (table["cluster"] == cluster) & (table["impact_parameter"] == impact)
+    return table[same & np.isclose(table["velocity"], velocity)]
+
+
+def mean_and_error(part, column):
+    """Mean of a column and its standard error over the collisions; the error is NaN for fewer than two."""
+    own = part[column].dropna()
+    return own.mean() if len(own) else np.nan, own.std(ddof=1) / np.sqrt(len(own)) if len(own) > 1 else np.nan
+
+
+def values(table, thresholds, likeness):
+    """Values of all slots that there can be, dict of str to str.
+
+    Parameters
+    ----------
+    table, thresholds, likeness : pandas.DataFrame
+        Of `ratd.experiments.collision.tables.findings`.
+
+    Returns
+    -------
+    dict of str to str
+        ``X velocity mrn100 30``: mean and error of a column at a velocity; ``n ...``: how many collisions;
+        ``v_frag velocity 570nm``: the fragmentation velocity, with ``... b0.3`` for an impact parameter;
+        ``v_stick``, ``ratio`` (of the two), ``energy`` (E_0/(N E_break)) likewise; ``radius velocity mrn100 X`` and
+        ``q ...``: the equal spheres that a cluster is like; and some totals.
+    """
+    found = {}
+    for (law, cluster, velocity), part in table[table["impact_parameter"] == 0].groupby(["law", "cluster", "velocity"]):
+        key = f"{law} {cluster} {velocity:g}"
+        found[f"n {key}"] = str(len(part))
+        for column in COLUMNS:
+            found[f"{column} {key}"] = with_error(*mean_and_error(part, column))
+    for _, row in thresholds.iterrows():
+        impact = row["impact_parameter"]
+        key = f"{row['law']} {row['cluster']}" + (f" b{impact:g}" if impact else "")
+        found[f"v_frag {key}"] = _threshold(row)
+        found[f"collisions {key}"] = f"{row['collisions']:.0f}"
+        found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
+        stick = row["sticking_velocity"]
+        close = row["above"] - row["below"] <= WIDEST * row["velocity"]
+        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if close else "–"
+        found[f"energy {key}"] = with_error(row["energy_per_contact"], np.nan, 0)
+    for _, row in likeness.iterrows():
+        key = f"{row['law']} {row['cluster']} {row['quantity']}"
+        found[f"radius {key}"], found[f"q {key}"] = _alike(row)
+        found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
+        found[f"velocities {key}"] = f"{row['velocities']:.0f}"
+    found |= free_samples()
+    found |= {
+        "collisions": str(len(table)),
+        "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
+        "worst balance spring": f"{100 * table.loc[table['friction'] == 'spring', 'balance'].max():.1f} %",
+    }
+    found |= {f"q of {radius * 1e6:g}": f"{moment_of_length(radius):.2f}" for radius in RADII}
+    return found
+
+
+def free_samples(number=400, spheres=5000):
+    """What free samples of the MRN law scatter by, as texts: share of the largest sphere, L_4.6 [um], 16 to 84 %."""
+    samples = [mrn(spheres, seed, mass_within=None, length_within=None) for seed in range(number)]
+    shares = [radii[0] ** 3 / np.sum(radii**3) for radii in samples]
+    lengths = [sample_length(radii, 4.6) * 1e6 for radii in samples]
+    low, high = np.quantile([shares, lengths], [0.16, 0.84], axis=1)
+    return {name: f"{low[k]:.2f} to {high[k]:.2f}" for k, name in enumerate(("free share", "free length"))}
+
+
+def _threshold(row):
+    """Text of a fragmentation velocity; where X stays on one side of the limit, on which."""
+    if np.isfinite(row["velocity"]):
+        # what lies between two velocities far apart is not known by a straight line between them
+        if row["above"] - row["below"] > WIDEST * row["velocity"]:
+            return f"between {row['below']:g} and {row['above']:g}"
+        return with_error(row["velocity"], row["error"], 1)
+    return f"not between {row['slowest']:g} and {row['fastest']:g}"
+
+
+def _alike(row):
+    """Texts of the radius and of the moment that a cluster is like, from 16 to 84 %."""
+    if not np.isfinite(row["radius"]):
+        return "–", "–"
+    beyond = " (end of the range)" if row["at_end"] else ""
+    radius = f"{row['radius'] / NM:.0f} ({row['radius_low'] / NM:.0f}–{row['radius_high'] / NM:.0f}){beyond}"
+    return radius, f"{row['q']:.1f} ({row['q_low']:.1f}–{row['q_high']:.1f}){beyond}"
+
+
+def claims(table, thresholds, likeness):
+    """What the sentences of the document say, dict of str to bool; all must hold.
+
+    Parameters
+    ----------
+    table, thresholds, likeness : pandas.DataFrame
+        As for `values`.
+    """
+
+    def mean(column, law, cluster, velocity):
+        return mean_and_error(cell(table, law, cluster, velocity), column)[0]
+
+    def frag(law, cluster):
+        own = thresholds[(thresholds["law"] == law) & (thresholds["cluster"] == cluster)]
+        return own[own["impact_parameter"] == 0]["velocity"].iloc[0]
+
+    unequal = table[~is_equal(table)]
+    ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
+    ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
+    ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
+        subset="sticking_velocity"
+    )
+    at_half = ratios[ratios["damping_time"] == 0.5e-9]
+    at_half, ratios = (own["velocity"] / own["sticking_velocity"] for own in (at_half, ratios))
+    printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
+    return {
+        "N_s never exceeds one less the share of the largest sphere": bool(
+            (unequal["N_s"] <= 1.0 - unequal["largest_share"] + 1e-9).all()
+        ),
+        "at 30 m/s N_s of MRN is far below that of equal spheres": mean("N_s", "velocity", "mrn100", 30)
+        < mean("N_s", "velocity", "314nm", 30) - 0.1,
+        "without the largest spheres N_s of MRN is near that of 0.314 um": abs(
+            mean("N_s_rest", "velocity", "mrn100", 30) - mean("N_s", "velocity", "314nm", 30)
+        )
+        < 0.15,
+        "at 45 m/s nearly all but the largest spheres is in pieces": mean("N_s_rest", "velocity", "mrn100", 45) > 0.8,
+        "without giants MRN holds best": mean("X", "velocity", "mrn100_to_800", 15)
+        > max(mean("X", "velocity", name, 15) for name in ("mrn100", "314nm", "314nm_giant")),
+        "without giants N_s of MRN is below that of equal spheres": mean("N_s", "velocity", "mrn100_to_800", 30)
+        < mean("N_s", "velocity", "314nm", 30) - 0.1,
+        "below the threshold MRN and 0.314 um are alike": abs(
+            mean("X", "velocity", "mrn100", 15) - mean("X", "velocity", "314nm", 15)
+        )
+        < 0.1,
+        "one large sphere among equal ones has the same ceiling": mean("N_s", "velocity", "314nm_giant", 30) < 0.7,
+        "at 30 m/s MRN does not hold together after 1.5 us": mean("X", "velocity", "mrn100", 30) < 0.3,
+        "X at 0.6 us is more than twice that of the end": mean("X_early", "velocity", "mrn100", 30)
+        > 2 * mean("X", "velocity", "mrn100", 30),
+        "with springs MRN comes apart at 15 m/s where 0.314 um holds": mean("X", "spring", "mrn100", 15)
+        < 0.3
+        < mean("X", "spring", "314nm", 15),
+        "springs lower the fragmentation velocity": frag("spring", "570nm") < 0.8 * frag("velocity", "570nm"),
+        "at A = 0.5 ns all are below the printed ones": all(
+            frag("velocity", name) < 0.8 * velocity
+            for name, velocity in printed.items()
+            if np.isfinite(frag("velocity", name))
+        ),
+        "v_frag over v_stick is about the same at A = 0.5 ns": bool(at_half.max() < 1.45 * at_half.min()),
+        "v_frag over v_stick falls with A": bool(ratios.min() < 0.6 * at_half.min()),
+        "no one A gives all printed velocities": frag("velocity_1.5ns", "570nm")
+        < 12.5
+        < 19.0
+        < frag("velocity_1.5ns", "453nm"),
+        "the balance is closed": bool(
+            (table["balance"] <= np.where(table["friction"] == "spring", 0.03, 0.01) + 1e-12).all()
+        ),
+    }
+
+
+def tables_of(files):
+    """The three tables of a job, from its files."""
+    kinds = {"table": "collision_table", "thresholds": "collision_thresholds", "likeness": "collision_likeness"}
+    return [io.read(files[name], kind).to_dataframe() for name, kind in kinds.items()]
+
+
+def document(files, settings, say):
+    """The document of a job of the pipeline: its template, filled."""
+    tables = tables_of(files)
+    wrong = [claim for claim, holds in claims(*tables).items() if not holds]
+    for claim in wrong:
+        say(f"no longer so, reread the document: {claim}")
+    with open(files["template"], encoding="utf-8") as file:
+        text = file.read()
+    return {"document": fill(text, values(*tables), files["template"])}

@@ -1,0 +1,52 @@
+"""What docs/collision.md is made from: its figures, their files and settings."""
+
+from pathlib import Path
+
+__all__ = ["DATA", "FIGURES", "SAMPLES", "TABLES", "figure_input", "figure_module", "figure_settings", "run_files"]
+
+DATA = "docs/collision/data"
+TABLES = "results/collision_study/{name}.nc"
+SAMPLES = "results/collision_study/samples.nc"
+_SHOWN = {"law": "velocity", "mrn": "mrn100", "twin": "314nm"}
+FIGURES = {
+    "figure1": ("figure1", "built", {}),
+    "figure2": ("figure2", "built", {}),
+    "figure3": ("snapshots", "picture", {"rotation": 0, "spacing": 1.0e-7}),
+    "figure4": ("snapshots", "picture", {"rotation": 0, "spacing": 1.5e-7}),
+    "figure5": ("figure5", "table", _SHOWN),
+    "figure6": ("figure6", "table", _SHOWN),
+    "figure7": ("figure7", "runs", _SHOWN),
+    "figure8": ("figure8", "table", _SHOWN),
+    "dissipation": ("dissipation", "table", _SHOWN),
+    "masses": ("masses", "runs", _SHOWN),
+    "scaling": ("scaling", "thresholds", {}),
+    "question": ("question", "table", {"velocities": [15.0, 30.0]}),
+}
+"""Figure -> module that draws it, what it is drawn from, and its settings."""
+
+
+def run_files():
+    """Committed files of collisions without snapshots, sorted list of str."""
+    return sorted(str(path) for path in Path(DATA).glob("*/*.nc") if path.parent.name != "pictures")
+
+
+def figure_module(name):
+    """Module that draws a figure."""
+    return FIGURES[name][0]
+
+
+def figure_settings(name):
+    """Settings of a figure."""
+    return FIGURES[name][2]
+
+
+def figure_input(name):
+    """Files that a figure is drawn from, dict of name to list of str."""
+    source = FIGURES[name][1]
+    if source == "built":
+        return {"built": [SAMPLES]}
+    if source == "picture":
+        return {"runs": [f"{DATA}/pictures/{name}.nc"]}
+    if source == "runs":
+        return {"runs": run_files()}
+    return {source: TABLES.format(name=f"collision_{source}")}

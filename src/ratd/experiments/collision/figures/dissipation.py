@@ -1,0 +1,59 @@
+"""Beyond the paper: where the energy of the impact goes."""
+
+import numpy as np
+
+from ratd.experiments.collision.figures.look import is_equal, means, velocity_axis
+from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
+from ratd.pipeline import io
+
+WAYS = {
+    "by_damping": ("normal damping", "#0072B2", "o"),
+    "by_sliding": ("sliding", "#D55E00", "s"),
+    "by_twisting": ("twisting", "#009E73", "^"),
+    "by_rolling": ("rolling", "#CC79A7", "v"),
+    "energy_end": ("still moving", "black", "D"),
+}
+"""Column -> label, colour, marker."""
+
+
+@styled
+def dissipation(table, law, clusters):
+    """Part of E_0 that each way takes, against velocity, a panel a cluster.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `ratd.experiments.collision.tables.COLUMNS`.
+    law : str
+    clusters : list of str
+        Names in the config.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Where the energy of the impact goes, law {law}")
+    panels = figure.subplots(1, len(clusters), sharey=True, squeeze=False)[0]
+    for axes, name in zip(panels, clusters, strict=True):
+        own = table[table["cluster"] == name]
+        axes.set_title(name.replace("_", " "), pad=2)
+        if not len(own):
+            empty(axes, "no collisions")
+            continue
+        for column, (label, colour, marker) in WAYS.items():
+            x, y, error = means(own, column)
+            axes.errorbar(x, y, error, color=colour, marker=marker, capsize=1.5, elinewidth=0.7, label=label)
+        velocity_axis(axes, own)
+        axes.set_ylim(-0.02, 1.02)
+    panels[0].set_ylabel("part of $E_0$")
+    panels[0].legend(loc="upper right")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    table = io.read(files["table"], "collision_table").to_dataframe()
+    equal = table[is_equal(table) & (table["law"] == settings["law"])]
+    largest = equal["cluster"].iloc[int(np.argmax(equal["largest_radius"]))] if len(equal) else settings["twin"]
+    return dissipation(table, settings["law"], list(dict.fromkeys([largest, settings["twin"], settings["mrn"]])))

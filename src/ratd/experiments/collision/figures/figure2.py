@@ -1,0 +1,47 @@
+"""Fig. 2: the length that stands for the MRN law, against the moment."""
+
+import numpy as np
+
+from ratd.aggregates.mrn import moment_of_length, mrn_length, part_above, sample_length
+from ratd.experiments.collision.printed import RADII
+from ratd.pictures.style import GREY, ONE_COLUMN, new_figure, styled
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
+
+HIGHEST = 8.0
+
+
+@styled
+def figure2(samples):
+    """L_q of the law, of samples, and the radii of the equal spheres on it.
+
+    Parameters
+    ----------
+    samples : list of (n,) array
+        Radii [m].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = new_figure(ONE_COLUMN, 0.8 * ONE_COLUMN, "Length of a moment of the MRN law")
+    axes = figure.subplots()
+    q = np.linspace(1.0, HIGHEST, 141)
+    for k, radii in enumerate(samples):
+        # of a sample whose smallest spheres were left out: they count in the mean, and add nothing to it
+        whole = part_above(radii.min())
+        own = [sample_length(radii, one) * whole ** (1.0 / one) * 1e6 for one in q]
+        axes.plot(q, own, color=GREY, lw=0.8, label="samples" if k == 0 else None)
+    axes.plot(q, [mrn_length(one) * 1e6 for one in q], color="black", label="law")
+    moments = [moment_of_length(radius) for radius in RADII]
+    axes.plot(moments, np.array(RADII) * 1e6, "o", color="#D55E00", label="radii of equal spheres")
+    axes.set(xlabel="moment $q$", ylabel="length $L_q$ [µm]", xlim=(1, HIGHEST), ylim=(0, None))
+    axes.legend(loc="upper left")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from the cluster of its settings as built."""
+    return figure2(
+        [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
+    )

@@ -1,0 +1,62 @@
+"""Fig. 5: X and N_s of clusters of equal spheres against the velocity."""
+
+import numpy as np
+
+from ratd.experiments.collision.figures.look import (
+    colour_of,
+    is_equal,
+    marker_of,
+    plot_means,
+    radius_label,
+    sticking_line,
+    velocity_axis,
+)
+from ratd.experiments.collision.fragmentation import STICKING
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
+from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
+from ratd.pipeline import io
+
+
+@styled
+def figure5(table, law):
+    """X and N_s against velocity, a curve a radius, central collisions of one law.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `ratd.experiments.collision.tables.COLUMNS`.
+    law : str
+        Name of the law in the config.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Open triangles on the line X = 0.15: where the paper prints the fragmentation velocity.
+    """
+    shown = table[(table["law"] == law) & is_equal(table) & (table["impact_parameter"] == 0)]
+    shown = shown[shown["second_contact"] == shown["second_contact"].mode().iloc[0]] if len(shown) else shown
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Clusters of equal spheres, law {law}")
+    left, right = figure.subplots(1, 2)
+    if not len(shown):
+        empty(left, "no collisions of equal spheres")
+        return figure
+    radii = np.sort(shown["largest_radius"].unique())
+    for radius in radii:
+        part = shown[shown["largest_radius"] == radius]
+        look = {"color": colour_of(radius, radii), "marker": marker_of(radius, radii), "lw": 0.9}
+        for axes, quantity in ((left, "X"), (right, "N_s")):
+            plot_means(axes, part, quantity, radius_label(radius), **look)
+        for known, velocity in PRINTED_THRESHOLDS.items():
+            if abs(known / radius - 1) < 1e-6:
+                left.plot(velocity, STICKING, marker="v", ms=7, mfc="none", color=look["color"], ls="none", zorder=4)
+    sticking_line(left, STICKING)
+    for axes, name in ((left, "agglomeration $X$"), (right, "fragmentation $N_\\mathrm{s}$")):
+        velocity_axis(axes, shown)
+        axes.set(ylabel=name, ylim=(-0.03, 1.03))
+    right.legend(loc="lower right")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure5(io.read(files["table"], "collision_table").to_dataframe(), settings["law"])

@@ -1,0 +1,69 @@
+"""Fig. 6: X and N_s of MRN clusters against the velocity, beside the equal spheres that the paper likens them to."""
+
+import numpy as np
+
+from ratd.experiments.collision.figures.look import (
+    MRN_STYLE,
+    colour_of,
+    is_equal,
+    marker_of,
+    plot_means,
+    radius_label,
+    sticking_line,
+    velocity_axis,
+)
+from ratd.experiments.collision.fragmentation import STICKING
+from ratd.experiments.collision.printed import PRINTED_RADII
+from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
+from ratd.pipeline import io
+
+BESIDE = sorted({radius for radius, _ in PRINTED_RADII.values()})
+
+
+@styled
+def figure6(table, law, mrn):
+    """X and N_s of an MRN cluster, a mark a collision, and means of equal spheres of the radii that it is likened to.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `ratd.experiments.collision.tables.COLUMNS`.
+    law, mrn : str
+        Names of the law and of the MRN cluster in the config.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
+    """
+    table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
+    own, equal = table[table["cluster"] == mrn], table[is_equal(table)]
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, law {law}")
+    left, right = figure.subplots(1, 2)
+    if not len(own):
+        empty(left, "no collisions of MRN clusters")
+        return figure
+    for axes, quantity in ((left, "X"), (right, "N_s")):
+        for radius in BESIDE:
+            part = equal[np.isclose(equal["largest_radius"], radius) & (equal["second_contact"] == 0.5)]
+            if len(part):
+                look = {"color": colour_of(radius, BESIDE), "marker": marker_of(radius, BESIDE), "lw": 0.9}
+                plot_means(axes, part, quantity, radius_label(radius), **look)
+        axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
+        plot_means(axes, own, quantity, mrn.replace("_", " "), **MRN_STYLE, zorder=4)
+        velocity_axis(axes, own)
+        axes.set_ylim(-0.03, 1.03)
+    sticking_line(left, STICKING)
+    shares = own.groupby("sample")["largest_share"].first()
+    for share in shares:
+        right.axhline(1 - share, color=HIGHLIGHT, lw=1.2, zorder=0)
+    right.text(0.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
+    left.set_ylabel("agglomeration $X$")
+    right.set_ylabel("fragmentation $N_\\mathrm{s}$")
+    left.legend(loc="upper right")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure6(io.read(files["table"], "collision_table").to_dataframe(), settings["law"], settings["mrn"])

@@ -1,0 +1,58 @@
+"""Fig. 8: the kinetic energy left at 0.5 us against the radius of equal spheres, with MRN beside it."""
+
+import numpy as np
+from matplotlib import colormaps
+
+from ratd.experiments.collision.figures.look import MARKERS, is_equal, means
+from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
+from ratd.pipeline import io
+
+MOST = 6
+"""Velocities that are drawn at most."""
+
+
+@styled
+def figure8(table, law, mrn):
+    """E(0.5 us)/E_0 against radius, a curve a velocity; MRN as a level of the same colour.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `ratd.experiments.collision.tables.COLUMNS`.
+    law, mrn : str
+        Names of the law and of the MRN cluster in the config.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    table = table[(table["law"] == law) & (table["impact_parameter"] == 0) & table["energy_half"].notna()]
+    equal, own = table[is_equal(table) & (table["second_contact"] == 0.5)], table[table["cluster"] == mrn]
+    figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, f"Energy left at 0.5 µs, law {law}")
+    axes = figure.subplots()
+    if not len(equal):
+        empty(axes, "no collisions")
+        return figure
+    # velocities that most radii have
+    often = equal.groupby("velocity")["largest_radius"].nunique().sort_index()
+    velocities = often[often >= min(3, often.max())].index.to_numpy()
+    velocities = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))]
+    for k, velocity in enumerate(velocities):
+        colour = colormaps["viridis"](0.9 * k / max(len(velocities) - 1, 1))
+        part = equal[equal["velocity"] == velocity].assign(velocity=lambda t: t["largest_radius"])
+        radius, mean, error = means(part, "energy_half")
+        axes.errorbar(
+            radius * 1e6, mean, error, color=colour, marker=MARKERS[k], capsize=1.5, label=f"{velocity:g} m s$^{{-1}}$"
+        )
+        same = own[own["velocity"] == velocity]["energy_half"]
+        if len(same):
+            axes.axhline(same.mean(), color=colour, lw=0.8, ls=(0, (4, 2)))
+    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=mrn.replace("_", " "))
+    axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))
+    axes.legend(ncols=2)
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure8(io.read(files["table"], "collision_table").to_dataframe(), settings["law"], settings["mrn"])

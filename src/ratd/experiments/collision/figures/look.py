@@ -1,0 +1,79 @@
+"""What the figures of the collision share: colours of radii, names of clusters, means with their errors."""
+
+import numpy as np
+from matplotlib import colormaps
+
+from ratd.pictures.style import GREY
+
+__all__ = ["MRN_STYLE", "colour_of", "label_of", "means", "plot_means", "radius_label"]
+
+MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
+"""How an MRN cluster looks."""
+MARKERS = "osv^P*X<>"
+_SCALE = colormaps["viridis"]
+
+
+def colour_of(radius, radii):
+    """Colour of a radius among some, by its place from the least to the greatest."""
+    place, number = _place(radius, radii)
+    return _SCALE(0.9 * place / max(number - 1, 1))
+
+
+def marker_of(radius, radii):
+    """Marker of a radius among some."""
+    return MARKERS[_place(radius, radii)[0] % len(MARKERS)]
+
+
+def _place(radius, radii):
+    """Place of a radius among some from the least on, and how many there are; radii differ by rounding."""
+    radii = np.sort(np.unique(radii))
+    return int(np.argmin(np.abs(radii - radius))), len(radii)
+
+
+def radius_label(radius):
+    """Text of a radius [m], such as "0.314 µm"."""
+    return f"{radius * 1e6:.3g} µm"
+
+
+def label_of(table):
+    """Text for the collisions of one cluster: the radius of its spheres, else its name."""
+    one = table.iloc[0]
+    if one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9):
+        return radius_label(one["largest_radius"])
+    return str(one["cluster"]).replace("_", " ")
+
+
+def is_equal(table):
+    """Which collisions of a table are of equal spheres, Series of bool."""
+    return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
+
+
+def means(table, quantity):
+    """Mean of a quantity at each velocity with its standard error.
+
+    Returns
+    -------
+    velocity, mean, error : (k,) arrays
+        The error is 0 where there is one collision.
+    """
+    groups = table.groupby("velocity")[quantity]
+    mean, count = groups.mean(), groups.count()
+    error = (groups.std(ddof=1) / np.sqrt(count)).fillna(0.0)
+    return mean.index.to_numpy(), mean.to_numpy(), error.to_numpy()
+
+
+def plot_means(axes, table, quantity, label, **style):
+    """Draw the means of a quantity against velocity, with bars of one standard error."""
+    x, y, error = means(table, quantity)
+    axes.errorbar(x, y, error, label=label, elinewidth=0.7, capsize=1.5, **style)
+
+
+def velocity_axis(axes, table):
+    """Label and limits of an axis of velocities."""
+    axes.set_xlabel("collision velocity $v$ [m s$^{-1}$]")
+    axes.set_xlim(0, 1.05 * table["velocity"].max())
+
+
+def sticking_line(axes, limit):
+    """The limit of X below which clusters are said to fragment."""
+    axes.axhline(limit, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)

@@ -1,0 +1,63 @@
+"""Beyond the paper: how the mass is spread over the pieces."""
+
+import numpy as np
+from matplotlib import colormaps
+
+from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
+
+MOST = 5
+"""Velocities that are drawn at most."""
+
+
+@styled
+def masses(groups):
+    """Part of the mass in pieces of at least some mass, means over the collisions, a panel a cluster.
+
+    Parameters
+    ----------
+    groups : dict of str to list of xarray.Dataset
+        Name of the cluster -> rows of files of collisions.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Mass in pieces of at least a mass")
+    panels = figure.subplots(1, len(groups), sharey=True, squeeze=False)[0]
+    edges = np.geomspace(1e-4, 1.0, 81)
+    for axes, (name, own) in zip(panels, groups.items(), strict=True):
+        axes.set_title(name.replace("_", " "), pad=2)
+        axes.set(xscale="log", xlabel="mass of a piece over that of both clusters", ylim=(0, 1.02))
+        if not own:
+            empty(axes, "no collisions")
+        velocities = np.array(sorted({row["velocity"].item() for row in own}))
+        shown = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))] if own else ()
+        for k, velocity in enumerate(shown):
+            curves = []
+            for row in own:
+                if row["velocity"].item() == velocity:
+                    part = row["piece_mass"].values / row["mass"].item()
+                    curves.append([part[part >= edge].sum() for edge in edges])
+            colour = colormaps["viridis"](0.9 * k / max(len(shown) - 1, 1))
+            axes.plot(edges, np.mean(curves, axis=0), color=colour, label=f"{velocity:g} m s$^{{-1}}$")
+        axes.legend(loc="lower left")
+    panels[0].set_ylabel("part of the mass")
+    return figure
+
+
+def rows_by_cluster(paths, law, clusters):
+    """Rows of the central collisions of some clusters under a law, dict of str to list."""
+    found = {name: [] for name in clusters}
+    for path in paths:
+        for row in rows(io.read(path, "collisions"), "collisions"):
+            name = row["cluster"].item()
+            if name in found and row["law"].item() == law and row["impact_parameter"].item() == 0.0:
+                found[name].append(row)
+    return found
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return masses(rows_by_cluster(files["runs"], settings["law"], [settings["twin"], settings["mrn"]]))

@@ -1,0 +1,79 @@
+"""Beyond the paper: the fragmentation velocity of clusters beside the sticking velocity of two of their spheres."""
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ratd.experiments.collision.figures.look import colour_of, radius_label
+from ratd.experiments.collision.printed import RADII
+from ratd.pictures.style import ONE_COLUMN, empty, logarithmic, new_figure, styled
+from ratd.pipeline import io
+
+WIDEST = 0.35
+"""Fragmentation velocities are shown where the velocities on both sides are no farther apart than this part of them."""
+RATIO = 35.0
+"""v_frag/v_stick that the printed velocities have at A = 0.5 ns (34 to 36)."""
+FACES = {"velocity": None, "spring": "white"}
+MARKS = {0.5e-9: "o", 1.0e-9: "s", 1.5e-9: "^"}
+
+
+@styled
+def scaling(thresholds):
+    """v_frag against v_stick: a colour a radius, a marker a damping time, open with springs.
+
+    Large markers have another surface energy.
+
+    Parameters
+    ----------
+    thresholds : pandas.DataFrame
+        `ratd.experiments.collision.tables.THRESHOLDS`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    own = thresholds[
+        (thresholds["impact_parameter"] == 0)
+        & thresholds["sticking_velocity"].notna()
+        & (thresholds["above"] - thresholds["below"] <= WIDEST * thresholds["velocity"])
+        & thresholds["friction"].isin(FACES)
+    ]
+    figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, "Clusters and pairs of their spheres")
+    axes = figure.subplots()
+    if not len(own):
+        empty(axes, "no fragmentation velocities")
+        return figure
+    for _, row in own.iterrows():
+        colour = colour_of(row["radius"], RADII)
+        face = FACES[row["friction"]] or colour
+        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"])), "D")
+        size = 6.5 if abs(row["surface_energy"] - 0.025) > 1e-6 else 4.0
+        axes.errorbar(
+            row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, ms=size,
+            capsize=1.5, ls="none",
+        )  # fmt: skip
+    line = np.array([own["sticking_velocity"].min() / 1.5, own["sticking_velocity"].max() * 1.5])
+    axes.plot(line, RATIO * line, color="black", lw=0.8, ls=(0, (4, 2)))
+    axes.set(xscale="log", yscale="log")
+    logarithmic(axes.xaxis)
+    logarithmic(axes.yaxis)
+    axes.set(xlabel="sticking velocity of two spheres [m s$^{-1}$]", ylabel="fragmentation velocity [m s$^{-1}$]")
+    handles = [
+        Line2D([], [], ls="none", marker="o", color=colour_of(radius, RADII), label=radius_label(radius))
+        for radius in sorted(own["radius"].unique())
+    ]
+    handles += [
+        Line2D([], [], ls="none", marker=marker, color="black", label=f"A = {time * 1e9:g} ns")
+        for time, marker in MARKS.items()
+        if np.isclose(own["damping_time"], time).any()
+    ]
+    handles += [
+        Line2D([], [], ls="none", marker="o", color="black", mfc="white", label="springs"),
+        Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label=f"{RATIO:g} times"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return scaling(io.read(files["thresholds"], "collision_thresholds").to_dataframe())

@@ -1,0 +1,93 @@
+"""Figs. 3 and 4: a collision in six pictures, spheres coloured by their radius."""
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+
+from ratd.base.errors import InputError
+from ratd.pictures.spheres import render, scale_length, view_axes
+from ratd.pictures.style import TWO_COLUMNS, new_figure, styled
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
+
+CAMERA = view_axes((0, -1, 0), (0, 0, 1))
+"""Seen from the side, the clusters coming from left and right."""
+PIXELS = 420
+SIZES = colormaps["viridis"]
+PANELS = 6
+
+
+def positions(row):
+    """Times (k,) [s], positions (k, n, 3) [m] and pieces (k, n) of a row with snapshots."""
+    n = row.sizes.get("monomer", 0)
+    if not n:
+        raise InputError("figure: the collision has no snapshots; name it in snapshots.runs of the config")
+    places = np.stack([row[f"snapshot_{axis}"].values for axis in "xyz"], axis=1).reshape(-1, n, 3)
+    return row["snapshot_time"].values, places, row["snapshot_piece"].values.reshape(-1, n)
+
+
+def size_scale(radius):
+    """Scale of the colours of radii [m], matplotlib.colors.LogNorm."""
+    low, high = radius.min(), radius.max()
+    return LogNorm(low, high if high > 1.01 * low else 1.5 * low)
+
+
+@styled
+def picture(row, spacing):
+    """A collision in pictures.
+
+    Parameters
+    ----------
+    row : xarray.Dataset
+        Of a file of collisions, with snapshots.
+    spacing : float
+        Time between two pictures [s]; the nearest snapshots are shown.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    time, place, _ = positions(row)
+    radius = row["radius"].values
+    wanted = [int(np.argmin(np.abs(time - spacing * k))) for k in range(PANELS)]
+    title = (
+        f"{row['cluster'].item()} at {row['velocity'].item():g} m s$^{{-1}}$, law {row['law'].item()}, "
+        f"rotation {row['seed'].item()}"
+    )
+    figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, title)
+    panels = figure.subplots(2, PANELS // 2)
+    scale = size_scale(radius)
+    half_width = 1.06 * np.max(np.abs(place[0] @ CAMERA.T)[:, :2] + radius[:, None])
+    for axes, k in zip(panels.ravel(), wanted, strict=True):
+        at = place[k] @ CAMERA.T
+        view = render(at, radius, SIZES(scale(radius))[:, :3], half_width, PIXELS)
+        edge = half_width * 1e6
+        axes.imshow(view, extent=(-edge, edge, -edge, edge), interpolation="antialiased")
+        axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
+        axes.set_axis_off()
+        axes.set_title(f"{time[k] * 1e6:.2f} µs", pad=2)
+        length = scale_length(0.5 * edge)
+        axes.plot([0.95 * edge - length, 0.95 * edge], [-0.95 * edge] * 2, color="black", lw=1.6)
+        axes.text(0.95 * edge - 0.5 * length, -0.9 * edge, f"{length:g} µm", ha="center", va="bottom")
+    bar = ScalarMappable(LogNorm(scale.vmin * 1e6, scale.vmax * 1e6), SIZES)
+    bar = figure.colorbar(bar, ax=panels, location="right", shrink=0.8, aspect=30, pad=0.01)
+    bar.set_label("radius of the sphere [µm]")
+    ticks = [tick for tick in (0.05, 0.1, 0.2, 0.5, 1.0, 2.0) if scale.vmin * 1e6 <= tick <= scale.vmax * 1e6]
+    bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks], minor=False)
+    bar.minorticks_off()
+    return figure
+
+
+def row_of(paths, seed):
+    """Row of a rotation in files of collisions."""
+    for path in paths:
+        for row in rows(io.read(path, "collisions"), "collisions"):
+            if row["seed"].item() == seed and row.sizes.get("monomer", 0):
+                return row
+    raise InputError(f"figure: no collision with snapshots has the rotation {seed}; see snapshots.runs of the config")
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return picture(row_of(files["runs"], settings["rotation"]), settings["spacing"])

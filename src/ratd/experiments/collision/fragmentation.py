@@ -1,0 +1,126 @@
+"""What is left of a collision: the two largest pieces, all others, and where fragmentation begins."""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ratd.base.errors import InputError
+
+__all__ = ["STICKING", "agglomeration", "fragmentation", "fragmentation_number", "fragmentation_velocity"]
+
+STICKING = 0.15
+"""X above which two clusters are said to stick (Kalweit & Drikakis 2006; Umstaetter & Urbassek 2020, Sect. 3.1)."""
+
+
+def fragmentation_number(largest, second, whole):
+    """N_s = 1 - (M_1 + M_2)/(2 M) [1], `whole` being the mass 2 M of both clusters (Eq. 9)."""
+    return 1.0 - (largest + second) / whole
+
+
+def agglomeration(largest, second, whole):
+    """X = (M_1 - M_2)/(2 M) [1], `whole` being the mass 2 M of both clusters (Eq. 10)."""
+    return (largest - second) / whole
+
+
+def fragmentation(run):
+    """N_s, X and the pieces at the end of a collision.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        From `ratd.collide`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `N_s` and `X`; along ``piece``, the heaviest first, `piece_mass` [kg], `piece_members`, `piece_largest_radius`
+        [m], `piece_of_a` (part of the mass that came with the first cluster). Single spheres are pieces too.
+    """
+    mass = 4.0 / 3.0 * np.pi * run.attrs["density"] * run["radius"].values ** 3
+    label = run["piece"].values
+    number = label.max() + 1
+    masses = np.bincount(label, mass, number)
+    members = np.bincount(label, minlength=number)
+    of_a = np.bincount(label, mass * (run["cluster"].values == 0), number) / masses
+    largest = np.zeros(number)
+    np.maximum.at(largest, label, run["radius"].values)
+    order = np.argsort(-masses, kind="stable")
+    first, second = (*masses[order], 0.0)[:2]
+    return xr.Dataset(
+        {
+            "N_s": ((), fragmentation_number(first, second, mass.sum()), {"units": "1", "long_name": "N_s, Eq. 9"}),
+            "X": ((), agglomeration(first, second, mass.sum()), {"units": "1", "long_name": "X, Eq. 10"}),
+            "piece_mass": ("piece", masses[order], {"units": "kg", "long_name": "mass of a piece"}),
+            "piece_members": ("piece", members[order], {"units": "1", "long_name": "spheres of a piece"}),
+            "piece_largest_radius": (
+                "piece",
+                largest[order],
+                {"units": "m", "long_name": "radius of the largest sphere of a piece"},
+            ),
+            "piece_of_a": (
+                "piece",
+                of_a[order],
+                {"units": "1", "long_name": "part of the mass that came with the first cluster"},
+            ),
+        }
+    )
+
+
+def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
+    """Velocity at which the mean X falls through a limit, with a bootstrap error.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a collision: `velocity` [m/s] and `X`.
+    limit : float
+        X of the threshold.
+    samples, seed : int
+        Of the bootstrap, which draws collisions of each velocity among themselves.
+
+    Returns
+    -------
+    pandas.Series
+        velocity [m/s], error (standard deviation of the bootstrap), low, high (its 16 and 84 %), found (part of its
+        samples with a threshold), below, above (the velocities that were tried on both sides of it). NaN where X stays
+        on one side.
+
+    Raises
+    ------
+    InputError
+        If a column is missing or there are no collisions.
+
+    Notes
+    -----
+    Mean X is interpolated linearly between the velocities. Where it falls through the limit more than once, the last
+    time counts: from there on clusters come apart.
+    """
+    for column in ("velocity", "X"):
+        if column not in table:
+            raise InputError(f"The table has no column {column!r}; it must have velocity and X.")
+    if not len(table):
+        raise InputError("The table has no collisions; it must have at least one row.")
+    velocities = np.sort(table["velocity"].unique().astype(float))
+    groups = [table["X"].to_numpy(float)[table["velocity"].to_numpy() == v] for v in velocities]
+    middle = _crossing(velocities, np.array([group.mean() for group in groups]), limit)
+    rng = np.random.Generator(np.random.PCG64(seed))
+    means = np.stack([group[rng.integers(len(group), size=(samples, len(group)))].mean(axis=1) for group in groups])
+    drawn = np.array([_crossing(velocities, mean, limit) for mean in means.T])
+    there = np.isfinite(drawn)
+    spread = drawn[there] if there.sum() > 1 else np.full(2, np.nan)
+    low, high = np.quantile(spread, [0.16, 0.84])
+    below = velocities[velocities <= middle].max(initial=-np.inf)
+    above = velocities[velocities > middle].min(initial=np.inf)
+    ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
+    values = {"velocity": middle, "error": np.std(spread, ddof=1), "low": low, "high": high, "found": there.mean()}
+    return pd.Series(values | ends)
+
+
+def _crossing(velocity, mean, limit):
+    """Where values at ascending velocities fall through a limit for the last time; NaN for nowhere."""
+    falls = np.flatnonzero((mean[:-1] >= limit) & (mean[1:] < limit))
+    if not len(falls):
+        return np.nan
+    k = falls[-1]
+    part = (mean[k] - limit) / (mean[k] - mean[k + 1])
+    return velocity[k] + part * (velocity[k + 1] - velocity[k])

@@ -1,0 +1,130 @@
+"""Which equal spheres does a cluster behave like? By N_s, X and the energy left, each on its own.
+
+At each velocity a quantity of equal spheres is a function of their radius, linear in its logarithm between the radii
+that there are. The radius that a cluster is like is the one at which it misses the cluster's means by least, over all
+velocities that both have.
+"""
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.mrn import moment_of_length
+from ratd.pipeline.kinds import Kind, entries, register
+
+__all__ = ["COLUMNS", "QUANTITIES", "likeness", "likeness_table"]
+
+QUANTITIES = {"X": "X", "N_s": "N_s", "energy_half": "energy left at 0.5 us"}
+"""Column of `ratd.experiments.collision.tables.COLUMNS` -> what it is called."""
+COLUMNS = {
+    "law": ("", "name of the law in the config"),
+    "cluster": ("", "name of the cluster in the config"),
+    "quantity": ("", "by what it is compared: X, N_s or energy_half"),
+    "velocities": ("1", "number of velocities that both have"),
+    "radius": ("m", "radius of the equal spheres that it is most like"),
+    "radius_low": ("m", "16 % of the bootstrap"),
+    "radius_high": ("m", "84 % of the bootstrap"),
+    "q": ("1", "moment of the MRN law whose length that is"),
+    "q_low": ("1", "that of `radius_low`"),
+    "q_high": ("1", "that of `radius_high`"),
+    "misfit": ("1", "root mean square difference that is left"),
+    "at_end": ("1", "1 where the best radius is the least or the greatest that there is"),
+}
+register("collision_likeness", Kind("Which equal spheres a cluster is like", entries(COLUMNS)))
+FEWEST = 3
+"""Radii that must have a velocity for it to count."""
+POINTS = 201
+"""Radii that are tried, evenly in the logarithm."""
+
+
+def _means(table, quantity, groups, rng=None):
+    """Mean of a quantity at each velocity, (velocities,), of one cluster; drawn anew where a generator is given."""
+    values = []
+    for group in groups:
+        own = table[quantity].to_numpy(float)[group]
+        own = own if rng is None else own[rng.integers(len(own), size=len(own))]
+        values.append(np.mean(own))
+    return np.array(values)
+
+
+def likeness(cluster, equal, quantity, samples=500, seed=0):
+    """Radius of the equal spheres that a cluster is most like.
+
+    Parameters
+    ----------
+    cluster : pandas.DataFrame
+        Collisions of the cluster, `velocity` and the quantity.
+    equal : dict of float to pandas.DataFrame
+        Radius [m] -> collisions of equal spheres; two radii at least.
+    quantity : str
+        A column.
+    samples, seed : int
+        Of the bootstrap over the collisions at each velocity.
+
+    Returns
+    -------
+    dict
+        velocities, radius, radius_low, radius_high, misfit, at_end; NaN without a velocity that all have.
+    """
+    radii = np.sort(list(equal))
+    common = set(cluster.loc[cluster[quantity].notna(), "velocity"])
+    for table in equal.values():
+        common &= set(table.loc[table[quantity].notna(), "velocity"])
+    common = sorted(common)
+    if not common or len(radii) < 2:
+        nothing = dict.fromkeys(("radius", "radius_low", "radius_high", "misfit", "at_end"), np.nan)
+        return {"velocities": len(common)} | nothing
+    tables = [cluster, *(equal[radius] for radius in radii)]
+    groups = [[np.flatnonzero(table["velocity"].to_numpy() == v) for v in common] for table in tables]
+    grid = np.geomspace(radii[0], radii[-1], POINTS)
+
+    def best(rng=None):
+        own, *others = (_means(table, quantity, group, rng) for table, group in zip(tables, groups, strict=True))
+        curve = [np.interp(np.log(grid), np.log(radii), values) for values in np.transpose(others)]
+        misfit = np.sqrt(np.mean((np.array(curve) - own[:, None]) ** 2, axis=0))
+        k = int(np.argmin(misfit))
+        return grid[k], misfit[k]
+
+    radius, misfit = best()
+    rng = np.random.Generator(np.random.PCG64(seed))
+    low, high = np.quantile([best(rng)[0] for _ in range(samples)], [0.16, 0.84])
+    at_end = float(radius in (grid[0], grid[-1]))
+    ends = {"radius_low": low, "radius_high": high}
+    return {"velocities": len(common), "radius": radius, **ends, "misfit": misfit, "at_end": at_end}
+
+
+def _with_common_velocities(own, equal):
+    """Collisions of a cluster, and of the radii that have all of the velocities that at least `FEWEST` radii share."""
+    shared = [
+        v for v in own["velocity"].unique() if sum((one["velocity"] == v).any() for one in equal.values()) >= FEWEST
+    ]
+    chosen = {radius: one for radius, one in equal.items() if set(shared) <= set(one["velocity"])}
+    return own[own["velocity"].isin(shared)], chosen
+
+
+def likeness_table(table, samples=500):
+    """`COLUMNS` for every law and every cluster of unequal spheres of a table of central collisions.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        `ratd.experiments.collision.tables.COLUMNS`.
+    samples : int
+        Of the bootstrap.
+    """
+    table = table[table["impact_parameter"] == 0.0]
+    same = table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
+    found = []
+    for law, part in table.groupby("law", sort=False):
+        alike = part[same.loc[part.index] & (part["second_contact"] == 0.5)]
+        equal = dict(list(alike.groupby(alike["largest_radius"].round(12))))
+        for cluster, own in part[~same.loc[part.index]].groupby("cluster", sort=False):
+            own, wanted = _with_common_velocities(own, equal)
+            for quantity in QUANTITIES:
+                row = likeness(own, wanted, quantity, samples)
+                row |= {"law": law, "cluster": cluster, "quantity": quantity}
+                row |= {
+                    q: moment_of_length(row[r])
+                    for q, r in (("q", "radius"), ("q_low", "radius_low"), ("q_high", "radius_high"))
+                }
+                found.append(row)
+    return pd.DataFrame(found, columns=list(COLUMNS))

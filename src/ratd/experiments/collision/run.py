@@ -1,0 +1,177 @@
+"""One collision of two clusters: energies, contacts and pieces against time."""
+
+import numpy as np
+
+from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
+from ratd.experiments.collision.approach import approach
+from ratd.experiments.collision.laws import balance_of, contacts_of, law_of, longest_step, step_of
+from ratd.experiments.evolve import columns, evolve
+from ratd.experiments.relax import relax
+from ratd.engine.layout import X
+from ratd.engine.state import monomer_rows
+
+__all__ = ["DURATION", "GAP", "at_rest", "collide", "impact_energy"]
+
+GAP = 20e-9
+"""Least distance of the two clusters at the start [m]."""
+RELAXATION_STEP = 1 / 32
+"""Step of the relaxation over the shortest time of a contact. With 1/8 the friction that grows with the rate, which is
+explicit, feeds spheres of several contacts."""
+DURATION = 3e-6
+"""How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
+
+
+def impact_energy(mass_a, mass_b, velocity):
+    """E_0 = m_red v^2/2 [J], kinetic energy in the frame of the centre of mass; M v^2/4 for two equal masses M [kg]."""
+    return 0.5 * mass_a * mass_b / (mass_a + mass_b) * velocity**2
+
+
+def at_rest(grain, law="dmt"):
+    """An aggregate after it has come to rest under a law.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    law : str or part
+        As for `collide`.
+
+    Returns
+    -------
+    ratd.Grain
+        Spheres in the same order, see `ratd.experiments.relax.relax`.
+    """
+    state = relax(grain, law=law_of(law), timestep_factor=RELAXATION_STEP)
+    position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
+    return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+
+
+def collide(
+    a,
+    b,
+    velocity,
+    impact_parameter=0.0,
+    seed=0,
+    law="dmt",
+    *,
+    duration=DURATION,
+    timestep=None,
+    gap=GAP,
+    records=150,
+    snapshot_every=5,
+    relaxed=False,
+    checkpoint=None,
+    progress=None,
+):
+    """Shoot two clusters at each other.
+
+    Parameters
+    ----------
+    a, b : ratd.Grain
+        The clusters, of one material; the same one may be given twice. Each is turned at random.
+    velocity : float
+        Of one against the other [m/s].
+    impact_parameter : float
+        0 for a central collision; in the sum of the radii of the two clusters, so that 1 would be a grazing one.
+    seed : int
+        Of the rotations, at least 0.
+    law : {"dmt", "jkr"} or part
+        Contact law, with its defaults or as `ratd.laws` makes it.
+    duration : float
+        [s]
+    timestep : float, optional
+        [s]; from the contacts of the smallest sphere when not given. The damping is explicit: it decides what becomes
+        of the clusters, and the implicit one is biased (`docs/model/engine.md`).
+    gap : float
+        Least distance of the two at the start [m].
+    records : int
+        Number of records after the start, evenly spaced in time.
+    snapshot_every : int
+        Records between two snapshots; 0 for none.
+    relaxed : bool
+        Whether the clusters are at rest under the law already. Otherwise they are brought to rest first.
+    checkpoint : path-like, optional
+        Where to keep what is needed to go on after a kill, with the same bits.
+    progress : callable, optional
+        Called every few seconds as ``progress(time, pieces, energy_left, seconds_to_go)``, the energy over that of the
+        impact.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `ratd.evolve`; `cluster` says whose each sphere was. Attributes: velocity, impact_parameter, seed, law,
+        timestep, steps, mass_a, mass_b [kg], impact_energy [J], and balance, the greatest residual of the balance of
+        energy over the impact energy.
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong.
+    RuntimeError
+        If the balance of energy is off by more than `ratd.experiments.collision.laws.balance_of`.
+    """
+    law = law_of(law)
+    _check(a, b, velocity, impact_parameter, seed, gap)
+    material = a.material
+    radius = np.concatenate([a.radius, b.radius])
+    if timestep is None:
+        timestep = step_of(radius, material, law)
+    elif not timestep <= (longest := longest_step(radius, material, law)):
+        raise InputError(
+            f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
+        )
+    if not relaxed:
+        a, b = (at_rest(a, law), at_rest(b, law)) if b is not a else (at_rest(a, law),) * 2
+    position, velocities = approach(a, b, velocity, impact_parameter, gap, seed)
+    contacts = np.concatenate([contacts_of(a, law), contacts_of(b, law) + len(a.radius)])
+    energy = impact_energy(a.mass.sum(), b.mass.sum(), velocity)
+
+    def tell(part, to_go, row):
+        now = columns(np.array([row]))
+        moving = float(now["kinetic_translation"][0] + now["kinetic_spin"][0])
+        progress(float(now["time"][0]), int(now["n_pieces"][0]), moving / energy, to_go)
+
+    run = evolve(
+        position, radius, velocities, material=material, law=law, duration=duration, timestep=float(timestep),
+        damping="explicit", contacts=contacts, records=records, snapshot_every=snapshot_every,
+        balance=balance_of(law), checkpoint=checkpoint, progress=None if progress is None else tell,
+    )  # fmt: skip
+    owner = np.repeat([0, 1], [len(a.radius), len(b.radius)])
+    run["cluster"] = ("monomer", owner, {"units": "1", "long_name": "cluster that the sphere came with"})
+    run.attrs |= {
+        "material": material.name,
+        "velocity": float(velocity),
+        "impact_parameter": float(impact_parameter),
+        "seed": int(seed),
+        "density": material.density,
+        "mass_a": float(a.mass.sum()),
+        "mass_b": float(b.mass.sum()),
+        "impact_energy": float(energy),
+        "balance": float(np.abs(run["residual"].values).max() / energy),
+    }
+    return run
+
+
+def _check(a, b, velocity, impact_parameter, seed, gap):
+    """One sentence for the first argument that is wrong."""
+    for name, grain in (("a", a), ("b", b)):
+        if not isinstance(grain, Grain):
+            raise InputError(f"{name} is of type {type(grain).__name__}; it must be a ratd.Grain.")
+    if a.material != b.material:
+        raise InputError(
+            f"The clusters are of {a.material.name!r} and of {b.material.name!r}; they must be of one material."
+        )
+    if not _is_number(velocity) or not velocity > 0.0:
+        raise InputError(f"velocity is {velocity!r}; it must be a number above 0, in m/s.")
+    if not _is_number(impact_parameter) or not 0.0 <= impact_parameter < 1.0:
+        raise InputError(f"impact_parameter is {impact_parameter!r}; it must be a number from 0 to below 1.")
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
+    if not _is_number(gap) or not gap > 0.0:
+        raise InputError(
+            f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start."
+        )
+
+
+def _is_number(value):
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and np.isfinite(value)

@@ -1,0 +1,143 @@
+"""docs/compression.md and its figures, drawn again from the data beside them.
+
+python -m ratd.experiments.compression.document collect RESULTS    take tables from a folder of results
+python -m ratd.experiments.compression.document redraw             figures and text, in seconds
+"""
+
+import sys
+from importlib import import_module
+from pathlib import Path
+
+
+from ratd.base.errors import FileError, InputError
+from ratd.experiments.compression.figures.monomers import name_of
+from ratd.experiments.compression.figures.tension import read_pulls
+from ratd.experiments.compression.findings import findings, spun_up
+from ratd.experiments.compression.plan import load
+from ratd.pictures.style import save
+from ratd.pipeline import io
+from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.documents import fill
+
+__all__ = ["collect", "main", "read_data", "redraw"]
+
+DATA = Path("docs/compression/data")
+FIGURES = Path("docs/compression")
+TEMPLATE = Path("docs/templates/compression.md")
+DOCUMENT = Path("docs/compression.md")
+CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/compression_default.yaml")
+SPUN = Path("docs/reproduction/data/ensemble/prescribed/grains.nc")
+"""Table of the ensemble of the spin-up, for the strengths that it implies."""
+
+
+def collect(results, data=DATA):
+    """Copy the tables of a folder of results beside the document, those that are finished.
+
+    Parameters
+    ----------
+    results : path-like
+        Such as ``results/compression_default``.
+    data : path-like
+    """
+    results, data = Path(results), Path(data)
+    names = [path.name for path in sorted((results / "compression").glob("*.nc")) if path.is_file()]
+    if not names:
+        raise FileError(f"{results}: holds no tables of the compression; run the target compression_tables first")
+    for name in names:
+        kind = "compression_snapshots" if name == "snapshots.nc" else "compression_set"
+        target = data / name if kind == "compression_snapshots" else data / "sets" / name
+        io.read(results / "compression" / name, kind)
+        with atomic(target) as temporary:
+            temporary.write_bytes((results / "compression" / name).read_bytes())
+    pulls = sorted(path for path in (results / "tension").rglob("phi_*.nc") if path.is_file())
+    if pulls:
+        io.write(data / "tension.nc", read_pulls(pulls), "tension_set")
+
+
+def read_data(data=DATA, spun=SPUN):
+    """The data beside the document.
+
+    Returns
+    -------
+    sets : dict of str to xarray.Dataset
+    entries : xarray.Dataset or None
+        Pulled clusters.
+    grains : dict or None
+        See `ratd.experiments.compression.findings.spun_up`.
+    lammps : pandas.DataFrame or None
+        See `ratd.experiments.compression.findings.of_lammps`.
+    """
+    data = Path(data)
+    sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
+    if "fiducial" not in sets:
+        raise FileError(f"{data / 'sets'}: holds no fiducial.nc, which all sets are compared with")
+    tension = data / "tension.nc"
+    entries = io.read(tension, "tension_set") if tension.is_file() else None
+    grains = spun_up(io.read(spun, "table").to_pandas()) if Path(spun).is_file() else None
+    peer = data / "lammps.nc"
+    lammps = io.read(peer, "validation_compression").to_dataframe() if peer.is_file() else None
+    return sets, entries, grains, lammps
+
+
+def redraw(folder=".", into=None):
+    """Write the document and its figures.
+
+    Parameters
+    ----------
+    folder : path-like
+        Where the project is.
+    into : path-like, optional
+        Where to write them instead.
+    """
+    folder = Path(folder)
+    into = folder if into is None else Path(into)
+    sets, entries, grains, lammps = read_data(folder / DATA, folder / SPUN)
+    plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
+    for name in plan.figures:
+        figure = draw(name, plan, sets, entries, grains, folder / DATA)
+        if figure is not None:
+            save(figure, into / FIGURES / f"{name}.png")
+    template = (folder / TEMPLATE).read_text(encoding="utf-8")
+    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, lammps)))
+
+
+def draw(name, plan, sets, entries, grains, data):
+    """One figure from the data that there are, or None where these do not show anything."""
+    module = import_module(f"ratd.experiments.compression.figures.{name}")
+    if name == "tension":
+        return None if entries is None else module.tension(entries, grains)
+    if name == "figure3":
+        path = data / "snapshots.nc"
+        return module.figure3(io.read(path, "compression_snapshots")) if path.is_file() else None
+    tables = [sets[wanted] for wanted in plan.sets_of(name) if wanted in sets]
+    if not tables:
+        return None
+    if name == "monomers":
+        equal, *others = tables
+        return module.monomers(equal, others, [name_of(table) for table in others])
+    if "set" in plan.config["figures"][name]:
+        one = {"figure12": "figure4"}.get(name, name)
+        drawn = getattr(import_module(f"ratd.experiments.compression.figures.{one}"), one)
+        return drawn(tables[0])
+    return getattr(module, name)(tables)
+
+
+def main(arguments):
+    """The command line; returns the exit code."""
+    try:
+        match arguments:
+            case ["collect", results]:
+                collect(results)
+            case ["redraw"]:
+                redraw()
+            case _:
+                print(__doc__.strip())
+                return 2
+    except (InputError, FileError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

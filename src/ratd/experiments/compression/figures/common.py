@@ -1,0 +1,103 @@
+"""What the figures of the compression share: curves of the pressure with their errors, colours, labels."""
+
+import re
+
+import numpy as np
+
+from ratd.aggregates.strength import compressive_strength_kataoka2013
+from ratd.experiments.compression.strength import mean_pressure
+from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure
+from ratd.pipeline import io
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+DASHES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), ":")
+"""Of the curves in a figure, told apart with any colour vision and without colours."""
+WAYS = {
+    "rolling": ("#0072B2", "-"),
+    "twisting": ("#D55E00", "--"),
+    "sliding": ("#009E73", "-."),
+    "damping": ("#8A8A8A", ":"),
+}
+"""Colour and dash of each way of dissipation."""
+PHI_LABEL = r"filling factor $\phi$"
+RATIO_LABEL = r"$P\,/\,(P_0\phi^3)$"
+
+
+def read_sets(files):
+    """Tables of sets, list of xarray.Dataset."""
+    return [io.read(path, "compression_set") for path in files["sets"]]
+
+
+def seeds_text(table):
+    """How many clusters of what a table holds, such as ``10 clusters of 1024``."""
+    n = table.sizes["seed_number"]
+    return f"{n} cluster{'s' if n > 1 else ''} of {table['n_monomers'].item()}"
+
+
+def strain_text(table):
+    """Strain rate of a table in mathtext."""
+    return rf"$C_\mathrm{{v}} = {power(table['strain_rate'].values[0])}$"
+
+
+def power(value):
+    """A number such as 3e-6 in mathtext."""
+    mantissa, exponent = f"{value:.2e}".split("e")
+    mantissa = f"{float(mantissa):g}"
+    ten = rf"10^{{{int(exponent)}}}"
+    return ten if mantissa == "1" else rf"{mantissa}\times{ten}"
+
+
+def damping_of(table):
+    """k_n of a table."""
+    return float(re.search(r"constant_damping=([0-9.e+-]+)", table.attrs["law"])[1])
+
+
+def two_panels(title):
+    """Figure of two panels above each other: P against phi, and the same over P_0 phi^3."""
+    figure = new_figure(ONE_COLUMN, 1.45 * ONE_COLUMN, title)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    above.set(xscale="log", yscale="log", ylabel=r"pressure $P$ [Pa]")
+    below.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, ylim=(0.1, 30))
+    below.axhline(1.0, color="black", lw=0.8)
+    return figure, above, below
+
+
+def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
+    """P_0 phi^3 of a table."""
+    phi = np.geomspace(table["phi"].values[0], 0.5, 50)
+    values = compressive_strength_kataoka2013(phi, table["rolling_pressure"].values[0])
+    axes.plot(phi, values, color=color, lw=0.8, label=label)
+
+
+def draw_curves(above, below, tables, labels, *, alone=False):
+    """Mean pressures with bands of one standard error, into both panels."""
+    for k, (table, label) in enumerate(zip(tables, labels, strict=True)):
+        mean, error = mean_pressure(table, alone=alone)
+        phi = table["phi"].values
+        line = phi**3 * table["rolling_pressure"].values[0]
+        style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
+        for axes, unit in ((above, 1.0), (below, line)):
+            value = np.where(mean > 0.0, mean, np.nan) / unit
+            axes.plot(phi, value, label=label, **style)
+            low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
+            axes.fill_between(phi, np.where(mean > 0.0, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
+
+
+def finish(figure, above, below=None):
+    """Readable logarithmic axes, and the legend."""
+    logarithmic(above.xaxis)
+    low = max(above.get_ylim()[0], 1e-2)
+    above.set_ylim(bottom=low)
+    logarithmic(above.yaxis)
+    above.legend(loc="upper left")
+    if below is not None:
+        logarithmic(below.yaxis)
+    return figure
+
+
+def pressures(tables, labels, title, *, alone=False):
+    """The figure of mean pressures of some sets that share P_0."""
+    figure, above, below = two_panels(title)
+    draw_curves(above, below, tables, labels, alone=alone)
+    draw_line(above, tables[0])
+    return finish(figure, above, below)

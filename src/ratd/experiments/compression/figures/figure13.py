@@ -1,0 +1,47 @@
+"""Fig. 13 of Kataoka et al. (2013): the filling factor of silicate against the pressure, beside other work."""
+
+import numpy as np
+
+from ratd.aggregates.strength import (
+    compressive_strength_kataoka2013,
+    compressive_strength_tatsuuma2023,
+    filling_factor_guettler2009,
+)
+from ratd.experiments.compression.figures.common import COLOURS, read_sets, seeds_text, strain_text
+from ratd.experiments.compression.strength import mean_pressure
+from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, new_figure, styled
+
+READ_OFF = {"this paper": 0.24, "Seizinger et al. 2012": 0.21, "Güttler et al. 2009": 0.17}
+"""Filling factors at 300 Pa that Kataoka et al. (2013) name in Sect. 3.7."""
+
+
+@styled
+def figure13(table):
+    """phi against P, mean of the runs with one standard error of P, beside fits, and the values named at 300 Pa."""
+    title = f"{table.attrs['material']}, {seeds_text(table)}, {strain_text(table)}"
+    figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, title)
+    axes = figure.subplots()
+    mean, error = mean_pressure(table)
+    phi = table["phi"].values
+    P_0 = table["rolling_pressure"].values[0]
+    axes.plot(mean, phi, color=COLOURS[0], label="here")
+    axes.fill_betweenx(phi, np.maximum(mean - error, 0.03 * mean), mean + error, color=COLOURS[0], alpha=0.2, lw=0)
+    axes.plot(compressive_strength_kataoka2013(phi, P_0), phi, color="black", lw=0.8, label=r"$P_0\phi^3$")
+    line = compressive_strength_tatsuuma2023(phi, P_0)
+    axes.plot(line, phi, color=COLOURS[1], ls="--", label="Tatsuuma et al. 2023 (recalled)")
+    pressure = np.geomspace(1, 1e6, 100)
+    axes.plot(
+        pressure, filling_factor_guettler2009(pressure), color=GREY, ls=":", label="Güttler et al. 2009 (recalled)"
+    )
+    for marker, (name, value) in zip("osv", READ_OFF.items(), strict=True):
+        label = f"at 300 Pa, as printed: {name}"
+        axes.plot(300.0, value, marker=marker, ls="none", color=COLOURS[3], mfc="none", label=label)
+    axes.set(xscale="log", xlabel="pressure $P$ [Pa]", ylabel=r"filling factor $\phi$", xlim=(1, 1e6), ylim=(0, 0.6))
+    logarithmic(axes.xaxis)
+    figure.legend(loc="outside lower center", ncols=1)
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure13(read_sets(files)[0])

@@ -1,0 +1,36 @@
+"""Fig. 4 of Kataoka et al. (2013): pressure against filling factor, single clusters and their mean."""
+
+import numpy as np
+
+from ratd.experiments.compression.figures.common import (
+    COLOURS,
+    draw_curves,
+    draw_line,
+    finish,
+    read_sets,
+    seeds_text,
+    strain_text,
+    two_panels,
+)
+from ratd.pictures.style import GREY, styled
+
+
+@styled
+def figure4(table):
+    """Pressures of all clusters of a set grey, their mean coloured with its standard error, P_0 phi^3 black."""
+    figure, above, below = two_panels(f"{table.attrs['material']}, {seeds_text(table)}, {strain_text(table)}")
+    for k, pressure in enumerate(table["pressure"].values):
+        value = np.where(pressure > 0.0, pressure, np.nan)
+        above.plot(table["phi"], value, color=GREY, lw=0.4, label=None if k else "single clusters")
+    draw_curves(above, below, [table], ["mean"])
+    start = table["static_from"].values[0]
+    for axes in (above, below):
+        axes.axvline(start, color=COLOURS[1], lw=0.6, ls=":")
+    above.text(start, 0.02, " static from here", color=COLOURS[1], transform=above.get_xaxis_transform(), va="bottom")
+    draw_line(above, table)
+    return finish(figure, above, below)
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure4(read_sets(files)[0])

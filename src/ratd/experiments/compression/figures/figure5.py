@@ -1,0 +1,16 @@
+"""Fig. 5 of Kataoka et al. (2013): the pressure at different strain rates."""
+
+from ratd.experiments.compression.figures.common import pressures, read_sets, seeds_text, strain_text
+from ratd.pictures.style import styled
+
+
+@styled
+def figure5(tables):
+    """Mean pressures of sets with different C_v."""
+    labels = [f"{strain_text(table)}, {table.sizes['seed_number']} runs" for table in tables]
+    return pressures(tables, labels, f"{tables[0].attrs['material']}, {seeds_text(tables[0])}")
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure5(read_sets(files))

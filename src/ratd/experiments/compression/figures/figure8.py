@@ -1,0 +1,41 @@
+"""Fig. 8 of Kataoka et al. (2013): where the energy goes."""
+
+from ratd.experiments.compression.figures.common import PHI_LABEL, WAYS, damping_of, read_sets, strain_text
+from ratd.experiments.compression.strength import rates
+from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
+
+
+def panel(axes, table, text):
+    """Energy dissipated per step in ln phi and monomer, by way."""
+    phi, rate = rates(table, tuple(WAYS))
+    n = table["n_monomers"].item()
+    for way, (colour, dash) in WAYS.items():
+        axes.plot(phi, rate[way] / n, color=colour, ls=dash, label=way)
+    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-15), xlim=(phi[0], 0.5))
+    axes.text(0.04, 0.04, text, transform=axes.transAxes)
+    logarithmic(axes.xaxis)
+    logarithmic(axes.yaxis)
+
+
+def panels(tables, texts, title):
+    """One panel a set, above each other, with one legend."""
+    figure = new_figure(ONE_COLUMN, (0.35 + 0.6 * len(tables)) * ONE_COLUMN, title)
+    every = figure.subplots(len(tables), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, table, text in zip(every, tables, texts, strict=True):
+        panel(axes, table, text)
+        axes.set_ylabel(r"d$E$/d ln $\phi$ / $N$ [J]")
+        axes.label_outer()
+    every[0].legend(loc="upper left")
+    return figure
+
+
+@styled
+def figure8(tables):
+    """Energy dissipated by each way, sets with different k_n below each other."""
+    texts = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}" for table in tables]
+    return panels(tables, texts, f"{tables[0].attrs['material']}: energy dissipated, {strain_text(tables[0])}")
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return figure8(read_sets(files))

@@ -1,0 +1,26 @@
+"""How alike the pressure is along the three axes."""
+
+from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL, read_sets
+from ratd.experiments.compression.strength import anisotropy
+from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
+
+
+@styled
+def isotropy(tables):
+    """Standard deviation of P_xx, P_yy, P_zz over P against phi, mean over seeds."""
+    figure = new_figure(ONE_COLUMN, 0.8 * ONE_COLUMN, "spread of the pressure over the axes")
+    axes = figure.subplots()
+    for k, table in enumerate(tables):
+        label = f"{table.attrs['material']}, N = {table['n_monomers'].item()}, {table.sizes['seed_number']} runs"
+        axes.plot(table["phi"], anisotropy(table), color=COLOURS[k % 5], ls=DASHES[k % 5], label=label)
+    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylabel="standard deviation / $P$", ylim=(0.02, 5))
+    axes.set_xlim(0.01, 0.5)
+    logarithmic(axes.xaxis)
+    logarithmic(axes.yaxis)
+    axes.legend(loc="upper right")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return isotropy(read_sets(files))

@@ -1,0 +1,39 @@
+"""Monomers of unequal radii: which length takes the place of r_0."""
+
+from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL, read_sets
+from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
+from ratd.experiments.compression.strength import mean_pressure
+from ratd.pictures.style import TWO_COLUMNS, logarithmic, new_figure, styled
+
+
+@styled
+def monomers(equal, others, names):
+    """P over what each length predicts, one panel a length; a right one brings all curves together."""
+    figure = new_figure(TWO_COLUMNS, 0.36 * TWO_COLUMNS, "monomers of unequal radii: pressure over predictions")
+    every = figure.subplots(1, len(LENGTHS), sharey=True)
+    for axes, (length, text) in zip(every, LENGTHS.items(), strict=True):
+        for k, (table, name) in enumerate(zip((equal, *others), ("equal", *names), strict=True)):
+            mean, error = mean_pressure(table)
+            line = predicted_pressures(table, equal)[length] * table["phi"].values ** 3
+            axes.plot(table["phi"], mean / line, color=COLOURS[k], ls=DASHES[k], label=name)
+            low, high = (mean - error) / line, (mean + error) / line
+            axes.fill_between(table["phi"], low.clip(1e-3), high.clip(1e-3), color=COLOURS[k], alpha=0.2, lw=0)
+        axes.axhline(1.0, color="black", lw=0.6)
+        axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, xlim=(0.02, 0.5), ylim=(0.2, 30), title=text)
+        logarithmic(axes.xaxis)
+        logarithmic(axes.yaxis)
+    every[0].set_ylabel("$P$ / prediction")
+    every[0].legend(loc="upper left")
+    return figure
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    equal, *others = read_sets(files)
+    return monomers(equal, others, [name_of(table) for table in others])
+
+
+def name_of(table):
+    """How wide the radii of a table are spread, in words."""
+    ratio = table["mean_radius"].item() / table["monomer_radius"].item()
+    return rf"$\langle a\rangle/\langle a^3\rangle^{{1/3}}$ = {ratio:.2f}"

@@ -1,0 +1,260 @@
+"""Every number that docs/compression.md tells, from the tables of the compression."""
+
+import math
+
+import numpy as np
+
+from ratd.aggregates.strength import (
+    compressive_strength_kataoka2013,
+    compressive_strength_tatsuuma2023,
+    filling_factor_guettler2009,
+    midplane_tension,
+)
+from ratd.base.materials import get_material
+from ratd.base.statistics import mean_of
+from ratd.experiments.compression.figures.tension import in_units
+from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
+from ratd.experiments.compression.strength import (
+    FIT_RANGE,
+    anisotropy,
+    fit_power_law,
+    fit_with_limit,
+    log_slope,
+    overtakes,
+    phi_at,
+    ratio_at,
+    scatter_at,
+    share_at,
+    slope_of_structure,
+)
+from ratd.pipeline.documents import Measured
+
+__all__ = ["findings", "spun_up"]
+
+AT = (0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
+"""Filling factors at which numbers are told."""
+WAYS = ("rolling", "twisting", "sliding", "damping")
+
+
+def of_set(name, table):
+    """Numbers of one set: name -> value, each name beginning with that of the set."""
+    found = {"n": table.sizes["seed_number"], "N": table["n_monomers"].item()}
+    found["steps"] = float(np.mean(table["steps"].values)) / 1e6
+    found["static"] = float(table["static_from"].values[0])
+    found["P0"] = float(table["rolling_pressure"].values[0])
+    found["start"] = float(np.mean(table["phi_start"].values))
+    gyration, error = table["mean_square_gyration"].item(), table["mean_square_gyration_error"].item()
+    root = math.sqrt(gyration)
+    r_0 = table["monomer_radius"].item()
+    found["gyration"] = Measured(root / r_0, 0.5 * error / root / r_0)
+    for phi in AT:
+        found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
+        found[f"scatter_{phi:g}"] = scatter_at(table, phi)
+        k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
+        found[f"contacts_{phi:g}"] = float(np.mean(table["n_contacts"].values[:, k]) / found["N"])
+        found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
+        found[f"anisotropy_{phi:g}"] = float(np.mean(np.abs(anisotropy(table)[max(k - 3, 0) : k + 4])))
+        for way in WAYS:
+            found[f"{way}_{phi:g}"] = share_at(table, way, phi)
+        found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
+    exponent, at, ratio = _several(fit_power_law(table))
+    found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
+    found["limit_c"], found["limit_phi"] = _several(fit_with_limit(table))
+    for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
+        found[f"{first}_over_{second}"] = overtakes(table, first, second)
+    part = np.abs(table["energy_residual"].values / table["work"].values)
+    for phi in (0.1, 0.3):
+        found[f"residual_{phi:g}"] = float(np.nanmax(part[:, table["phi"].values > phi]))
+    for k, phi in enumerate(table["snapshot_phi"].values):
+        nominal = f"{float(f'{phi:.1g}'):g}"
+        found[f"slope_{nominal}"] = slope_of_structure(table, k)
+        found[f"far_slope_{nominal}"] = _far_slope(table, k)
+    for phi in AT:
+        found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
+        found[f"fitted_{phi:g}"] = float(
+            found["limit_c"].value * compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value) / phi**3
+        )
+    found["phi_300"] = _measured(phi_at(table, 300.0))
+    found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
+    found["tatsuuma_300"] = _solved(300.0, found["P0"])
+    return {f"{name}.{key}": value for key, value in found.items()}
+
+
+def _solved(pressure, rolling_pressure):
+    phi = np.linspace(0.01, 0.6, 5000)
+    return float(np.interp(pressure, compressive_strength_tatsuuma2023(phi, rolling_pressure), phi))
+
+
+def _far_slope(table, snapshot):
+    """Slope of N(<r) over the last distances that stand in the table at a snapshot."""
+    number = table["number_within"].values[:, snapshot]
+    last = np.flatnonzero(np.isfinite(number).any(axis=0))[-4:]
+    return log_slope(table["distance"].values[last], number[:, last])
+
+
+def _measured(fit):
+    return Measured(float(fit.value[0]), float(fit.error[0]))
+
+
+def _several(fit):
+    return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
+
+
+def of_monomers(equal, tables):
+    """P over what each length predicts, geometric mean over the range of the fit, and over that of equal monomers."""
+    found = {}
+    reference = fit_power_law(equal).value[2]
+    for name, table in tables.items():
+        own = _several(fit_power_law(table))[2]
+        predicted = predicted_pressures(table, equal)
+        for length in LENGTHS:
+            ratio = own.value * table["rolling_pressure"].values[0] / predicted[length]
+            factor = ratio / own.value
+            found[f"{name}.over_{length}"] = Measured(ratio / reference, own.error * factor / reference)
+        found[f"{name}.length"] = math.sqrt(
+            table["mean_square_gyration"].item() / equal["mean_square_gyration"].item()
+        ) * (equal["monomer_radius"].item() / table["monomer_radius"].item())
+        found[f"{name}.mean_over_volume"] = table["mean_radius"].item() / table["monomer_radius"].item()
+    return found
+
+
+def of_tension(entries):
+    """Strength over the formula of Tatsuuma et al. and the place of the peak, by way of pulling and phi."""
+    strength, formula = in_units(entries)
+    found = {}
+    rates, phi = entries["strain_rate"].values, np.round(entries["phi"].values, 3)
+    axes = np.where(entries["n_axes"].values == 1, "x", "xyz")
+    for way in np.unique(axes):
+        for rate in np.unique(rates[axes == way]):
+            own = (axes == way) & (rates == rate)
+            for each in np.unique(phi[own]):
+                here = own & (phi == each)
+                key = f"{each:g}_{rate:.0e}"
+                found[f"tension_{way}.{key}"] = Measured(*mean_of((strength / formula)[here]))
+                found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
+                found[f"tension_{way}.n_{key}"] = int(here.sum())
+            if len(np.unique(phi[own])) > 1:
+                slope, at = np.polyfit(np.log(phi[own]), np.log(strength[own]), 1)
+                found[f"tension_{way}.exponent_{rate:.0e}"] = float(slope)
+                found[f"tension_{way}.factor_{rate:.0e}"] = float(np.exp(at))
+    return found
+
+
+def spun_up(grains, mark="omega_disr"):
+    """Tensile strengths that the disruption of spun-up grains implies.
+
+    Parameters
+    ----------
+    grains : pandas.DataFrame
+        Table of the ensemble of the spin-up.
+    mark : str
+        Which angular velocity.
+
+    Returns
+    -------
+    dict
+        ``phi``, ``strength`` (S a/gamma), ``type``: (k,) arrays, one number a material, type and size, means over
+        seeds; a is the mean radius of the monomers.
+
+    Notes
+    -----
+    S is the mean tension across the plane through the axis of a porous sphere of the grain's mass and filling factor
+    that turns at the mark (`midplane_tension`).
+    """
+    grains = grains[grains[mark].notna()]
+    gamma = grains["material"].map(lambda name: get_material(name).surface_energy).to_numpy(float)
+    density = grains["material"].map(lambda name: get_material(name).density).to_numpy(float)
+    phi = grains["filling_factor"].to_numpy(float)
+    outer = grains["a_eff"].to_numpy(float) * phi ** (-1.0 / 3.0)
+    tension = midplane_tension(grains[mark].to_numpy(float), density, phi, outer)
+    strength = tension * grains["mean_monomer_radius"].to_numpy(float) / gamma
+    own = grains.assign(strength=strength, size=np.round(grains["a_eff"] / 1e-9))
+    cells = own.groupby(["material", "type", "size"], as_index=False)[["filling_factor", "strength"]].mean()
+    return {
+        "phi": cells["filling_factor"].to_numpy(),
+        "strength": cells["strength"].to_numpy(),
+        "type": cells["type"].to_numpy(),
+    }
+
+
+def of_lammps(table):
+    """Pressure and contacts in LAMMPS over those here, of the same clusters, means over bins of phi and seeds.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_compression``.
+    """
+    found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
+    for name, low, high in (("low", 0.04, 0.12), ("high", 0.12, 0.4)):
+        part = table[(table["phi"] > low) & (table["phi"] < high)]
+        over = part.assign(pressure=part["pressure"] / part["line"])
+        mean = over.groupby(["seed", "code"])[["pressure", "n_contacts"]].mean().unstack("code")
+        for column in ("pressure", "n_contacts"):
+            ratio = mean[column]["LAMMPS"] / mean[column]["ratd"]
+            found[f"lammps.{column}_{name}"] = Measured(*mean_of(ratio.to_numpy()))
+    return found
+
+
+def verdicts(values, sets):
+    """Words on which sentences of the document rest."""
+    found = {}
+    for phi in (0.05, 0.1, 0.3):
+        ratio = values[f"fiducial.ratio_{phi:g}"].value
+        found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
+    exponent = values["fiducial.exponent"]
+    found["exponent"] = "agrees" if abs(exponent.value - 3.0) < max(0.3, 2.0 * exponent.error) else "differs"
+    found["leader_0.1"] = max(WAYS[:3], key=lambda way: values[f"fiducial.{way}_0.1"])
+    found["leader_0.48"] = max(WAYS[:3], key=lambda way: values[f"fiducial.{way}_0.48"])
+    for name in sets:
+        if name != "fiducial":
+            found[f"{name}.same"] = "agrees" if _same(values, name) else "differs"
+    if "xi_p48_32" in values:
+        alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
+        found["high_density"] = "does not depend" if alike else "depends"
+    if "silicate" in sets:
+        found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
+    return found
+
+
+def _same(values, name):
+    """Whether the mean ratio in the range of the fit is that of the fiducial set, within 15 % and two errors."""
+    own, other = values[f"{name}.ratio"], values["fiducial.ratio"]
+    return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
+
+
+def findings(sets, entries, spun, lammps=None):
+    """Values and verdicts for the slots of the document.
+
+    Parameters
+    ----------
+    sets : dict of str to xarray.Dataset
+        Tables of the kind ``compression_set``, ``fiducial`` among them.
+    entries : xarray.Dataset or None
+        Of the kind ``tension_set``.
+    spun : dict or None
+        From `spun_up`.
+    lammps : pandas.DataFrame, optional
+        See `of_lammps`.
+    """
+    values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
+    values["guettler_300"] = float(filling_factor_guettler2009(300.0))
+    for name, table in sets.items():
+        values |= of_set(name, table)
+    unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
+    values |= of_monomers(sets["fiducial"], unequal)
+    if "xi_2" in sets and "xi_32" in sets:
+        values["xi_p48_8"] = 4.0 * values["fiducial.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
+        values["xi_p48_32"] = 16.0 * values["xi_32.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
+    values["line_silicate_024"] = (
+        float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
+    )
+    if entries is not None:
+        values |= of_tension(entries)
+    if lammps is not None:
+        values |= of_lammps(lammps)
+    if spun is not None:
+        over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
+        for kind in np.unique(spun["type"]):
+            values[f"spun.{kind}"] = float(np.median(over[spun["type"] == kind]))
+    return values | verdicts(values, sets)

@@ -1,0 +1,187 @@
+"""The plan of the compression: a checked config, the settings of each job, and the runs that the figures need."""
+
+from dataclasses import asdict, replace
+
+from ratd.aggregates.clusters import MONOMER_RADIUS
+from ratd.base.errors import InputError
+from ratd.base.units import NM
+from ratd.pipeline import config as configs
+
+__all__ = ["FIGURES", "Plan", "check", "load"]
+
+FIGURES = (
+    *(f"figure{number}" for number in range(3, 14)),
+    "isotropy",
+    "high_density",
+    "tension",
+    "monomers",
+    "fewer_steps",
+)
+CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
+RUN = "<results>/compression/{set}/seed_{seed}.nc"
+TABLE = "<results>/compression/{set}.nc"
+SNAPSHOTS = "<results>/compression/snapshots.nc"
+PULL = "<results>/tension/{pull}/phi_{phi}_seed_{seed}.nc"
+
+
+def load(*paths, schemas="config/schema"):
+    """Plan of some config files, each of which stands over those before it; see `check`."""
+    return check(configs.load(*paths), schemas)
+
+
+def check(config, schemas="config/schema"):
+    """Check a config as a whole.
+
+    Parameters
+    ----------
+    config : dict
+        The merged config.
+    schemas : path-like, optional
+        Folder of the JSON schemas.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        One sentence that names the first key that is wrong, and what is allowed.
+    """
+    shared, own, materials = configs.section(config, "compression", schemas)
+    plan = Plan(own, materials, shared["results"])
+    for name in plan.figures:
+        for wanted in plan.sets_of(name):
+            if wanted not in own["sets"]:
+                allowed = ", ".join(own["sets"])
+                raise InputError(f"config: compression.figures.{name} names the set {wanted!r}; allowed: {allowed}")
+    for name in plan.sets:
+        material = plan.of_set(name)["material"]
+        if material not in materials:
+            allowed = ", ".join(materials)
+            raise InputError(f"config: compression.sets.{name}.material is {material!r}; allowed: {allowed}")
+        plan.grow(name)
+    return plan
+
+
+class Plan:
+    """A checked config, and what follows from it.
+
+    Parameters
+    ----------
+    config : dict
+        The checked keys of the compression.
+    materials : dict of str to Material
+    results : str
+        Folder of all results.
+    """
+
+    def __init__(self, config, materials, results):
+        self.config = config
+        self.materials = materials
+        self.results = results.rstrip("/") or "/"
+
+    @property
+    def figures(self):
+        """Names of the figures to draw, list of str."""
+        return [name for name, own in self.config["figures"].items() if own is not None]
+
+    @property
+    def sets(self):
+        """Names of the sets that the figures need, list of str."""
+        return list(dict.fromkeys(wanted for name in self.figures for wanted in self.sets_of(name)))
+
+    def sets_of(self, figure):
+        """Names of the sets of which a figure is drawn, or whose clusters are pulled for it."""
+        own = self.config["figures"][figure]
+        if "pulls" in own:
+            return [self.config["pulls"][pull]["set"] for pull in own["pulls"]]
+        return [own["set"]] if "set" in own else list(own["sets"])
+
+    def of_set(self, name):
+        """Keys of a set, with what all sets share."""
+        return configs.merge(self.config["all_sets"], self.config["sets"][name] or {})
+
+    def seeds(self, name):
+        """Seeds of a set, list of int."""
+        own = self.of_set(name)["seeds"]
+        return list(range(own["first"], own["first"] + own["number"]))
+
+    def material(self, name):
+        """Material of a set, its rolling displacement changed where the set says so."""
+        own = self.of_set(name)
+        material = self.materials[own["material"]]
+        if own["xi_c_nm"] is not None:
+            material = replace(material, critical_rolling_displacement=own["xi_c_nm"] * NM)
+        return material
+
+    def grow(self, name):
+        """Settings of the growth of the clusters of a set."""
+        own = self.of_set(name)
+        radii = own["radii"]
+        radius = own["radius_nm"]
+        if radii is None and radius is None and own["material"] not in MONOMER_RADIUS:
+            raise InputError(
+                f"config: compression.sets.{name}.radius_nm is null; allowed: a number above 0, or null for "
+                f"{', '.join(MONOMER_RADIUS)}"
+            )
+        if radii is not None:
+            lengths = {key.removesuffix("_nm"): value * NM for key, value in radii.items() if key.endswith("_nm")}
+            radii = {key: value for key, value in radii.items() if not key.endswith("_nm")} | lengths
+        return {
+            "material": asdict(self.material(name)),
+            "n": own["n"],
+            "radius": None if radius is None else radius * NM,
+            "radii": radii,
+            "copies": own["copies"],
+        }
+
+    def compress(self, name):
+        """Settings of the compression of a set."""
+        own = self.of_set(name)
+        step = own["semi_implicit"]
+        if step is not None:
+            lengths = {key.removesuffix("_nm"): step[key] * NM for key in ("displacement_nm", "travel_nm")}
+            step = {"longest": step["longest_t0"], "calming": step["calming"], **lengths}
+        names = ("strain_rate", "k_n", "until_phi", "timestep_factor", "scheme", "snapshots")
+        return {key: own[key] for key in names} | {"semi_implicit": step}
+
+    def work(self, name):
+        """A measure of the time that a run of a set takes: monomers over strain rate and step."""
+        own = self.of_set(name)
+        return own["n"] / (own["strain_rate"] * own["timestep_factor"])
+
+    def stretch(self, pull):
+        """Settings of a pull, with those of the compression before it."""
+        own = self.config["pulls"][pull]
+        return self.compress(own["set"]) | {"pull": {key: own[key] for key in ("strain_rate", "axes")}}
+
+    def files(self, path, name):
+        """Files of all seeds of a set."""
+        return [path.format(set=name, seed=seed) for seed in self.seeds(name)]
+
+    def pull_files(self, pull):
+        """Files of a pull."""
+        own = self.config["pulls"][pull]
+        seeds = self.seeds(own["set"])[: own["number"]]
+        return [PULL.format(pull=pull, phi=f"{phi:g}", seed=seed) for phi in own["phi"] for seed in seeds]
+
+    def figure_input(self, name):
+        """Files that a figure is drawn from, dict of str to list of str."""
+        own = self.config["figures"][name]
+        if "pulls" in own:
+            return {"pulls": [path for pull in own["pulls"] for path in self.pull_files(pull)]}
+        if name == "figure3":
+            return {"snapshots": [SNAPSHOTS]}
+        return {"sets": [TABLE.format(set=wanted) for wanted in self.sets_of(name)]}
+
+    def snapshots(self):
+        """Run and settings of the snapshots of figure 3."""
+        own = self.config["figures"]["figure3"]
+        return RUN.format(set=own["set"], seed=own["seed"]), {"phi": own["phi"]}
+
+    @property
+    def tables(self):
+        """Files of all tables that the figures are drawn from, list of str."""
+        files = [path for name in self.figures for paths in self.figure_input(name).values() for path in paths]
+        return list(dict.fromkeys(files))

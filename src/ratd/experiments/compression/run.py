@@ -1,0 +1,265 @@
+"""Compress a cluster: the experiment of Kataoka et al. (2013)."""
+
+import math
+import warnings
+from dataclasses import fields
+
+import numpy as np
+
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.strength import rolling_pressure
+from ratd.base.errors import InputError
+from ratd.base.materials import get_material
+from ratd.engine import checkpoint as checkpoints
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import new_state
+from ratd.experiments.compression.static import box_rate, static_from, time_unit
+from ratd.experiments.compression.strain import Parts, strain, strain_dataset
+from ratd.geometry.box import periodic, touching_pairs
+from ratd.laws.jkr_with_springs import jkr
+from ratd.observables.structure import radius_of_gyration
+
+__all__ = ["BALANCE", "TIMESTEP_FACTOR", "Cluster", "compress", "prepared"]
+
+RECORD_STEP = 1.01
+"""Ratio of the filling factors of two records."""
+DENSEST = 0.64
+"""Greatest `until_phi`: random close packing of equal spheres."""
+TIMESTEP_FACTOR = 0.14
+"""f of the explicit step: 0.2 t_0 for equal monomers, at which P lies within 1 % of that at half the step up to
+phi = 0.1."""
+K_N = 0.01
+"""k_n of the constant damping."""
+SNAPSHOTS = (0.003, 0.01, 0.03, 0.1, 0.3)
+BALANCE = {0.1: 0.005, 0.3: 0.002}
+"""From this filling factor on, the balance of energy is to hold to this part of the work of the box."""
+NOT_STATIC = 0.1
+"""A run is warned of when it is static only from this filling factor on."""
+
+
+class Cluster:
+    """A checked aggregate, and the constants that its compression is told in.
+
+    Attributes
+    ----------
+    grain : Grain
+    radius : float
+        r_0 [m]: radius of the equal monomers, or that of the monomer of mean volume.
+    time_unit : float
+        t_0 [s] of two monomers of this radius.
+    rolling_pressure : float
+        P_0 = E_roll/r_0^3 [Pa].
+    """
+
+    def __init__(self, cluster, material=None):
+        if not isinstance(cluster, Grain):
+            raise InputError(
+                f"the cluster is of type {type(cluster).__name__}; it must be a ratd.Grain, from ratd.grow_bcca, "
+                "ratd.grow or ratd.Grain(position, radius, material)."
+            )
+        if material is not None:
+            cluster = Grain(cluster.position, cluster.radius, get_material(material), seed=cluster.seed)
+        self.grain = cluster
+        self.radius = float(np.mean(cluster.radius**3)) ** (1.0 / 3.0)
+        self.time_unit = time_unit(cluster.material, self.radius)
+        own = cluster.material.surface_energy, cluster.material.critical_rolling_displacement
+        self.rolling_pressure = rolling_pressure(*own, self.radius)
+
+    @property
+    def volume(self):
+        """Volume of the monomers [m3]."""
+        return 4.0 / 3.0 * math.pi * float(np.sum(self.grain.radius**3))
+
+
+def compress(
+    cluster,
+    strain_rate=1e-6,
+    until_phi=0.5,
+    *,
+    material=None,
+    law=None,
+    timestep_factor=TIMESTEP_FACTOR,
+    integrator=None,
+    box_length=None,
+    scheme="homogeneous",
+    snapshots=SNAPSHOTS,
+    balance=True,
+    checkpoint=None,
+    progress=None,
+):
+    """Compress an aggregate by its own copies, in a periodic box that shrinks.
+
+    Parameters
+    ----------
+    cluster : Grain
+        From `ratd.grow_bcca`, or any other aggregate in one piece.
+    strain_rate : float
+        C_v: the box shrinks with dL/dt = -2 C_v L/t_0.
+    until_phi : float
+        Filling factor at which to end.
+    material : str or Material, optional
+        In place of that of the cluster.
+    law : part, optional
+        Contact law; by default `ratd.laws.jkr` with the constant damping k_n = 0.01.
+    timestep_factor : float
+        f of the explicit step.
+    integrator : part, optional
+        In place of the explicit one, e.g. ``ratd.engine.semi_implicit.semi_implicit(...)``.
+    box_length : float, optional
+        Edge of the box at the start [m]; by default the greatest extent of the cluster along x, y or z, in which copies
+        do not overlap.
+    scheme : {"homogeneous", "as_printed"}
+        See `ratd.periodic`.
+    snapshots : sequence of float
+        Filling factors at which positions are kept.
+    balance : bool
+        Whether the run ends with an error when the balance of energy is off by more than `BALANCE` allows.
+    checkpoint : path-like, optional
+        Where to keep what is needed to go on after a kill, with the same bits.
+    progress : callable, optional
+        Called every few seconds as ``progress(phi, pressure, seconds_to_go)``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``record``, which are 1 % in phi apart: ``phi``, ``pressure`` (mean since the last record, at
+        ``phi_mean``), ``pressure_tensor``, ``n_contacts``, ``box_length``, ``stored_MODE``, ``dissipated_WAY``,
+        ``work``, ``energy_residual``. Along ``snapshot``: ``snapshot_phi``, ``snapshot_box_length``,
+        ``snapshot_position``. The attributes say what was done, and from which filling factor on the compression is
+        static (``static_from``). `ratd.stretch` goes on from it.
+
+    Raises
+    ------
+    InputError
+        If an argument is not usable.
+    RuntimeError
+        If the integration fails, or leaves the balance of energy.
+
+    Warns
+    -----
+    UserWarning
+        If inertia dominates up to phi = 0.1.
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4; docs/model/drives.md says what is not as printed.
+    """
+    cluster = Cluster(cluster, material)
+    strain_rate = _positive("strain_rate", strain_rate)
+    box, first, until_phi = _box(cluster, strain_rate, until_phi, box_length, scheme)
+    law = jkr(damping="constant", constant_damping=K_N) if law is None else law
+    parts = Parts(law, box, leapfrog(timestep_factor=timestep_factor) if integrator is None else integrator)
+    static = _static_from(cluster, box)
+
+    number = math.ceil(math.log(until_phi / first) / math.log(RECORD_STEP))
+    phi = first * np.exp(np.log(until_phi / first) * np.arange(1, number + 1) / number)
+    marks = np.log(first / phi) / (3.0 * box.rate_x)
+    reached = [value for value in snapshots if first <= value <= until_phi]
+    wanted = [int(np.searchsorted(phi, value * (1.0 - 1e-9))) + 1 for value in reached]
+    state, key = prepared(cluster, parts, (until_phi, tuple(wanted)))
+
+    def tell(row, seconds_to_go):
+        progress(row["phi_mean"], row["pressure"], seconds_to_go)
+
+    how = {"snapshots": wanted, "check": _check_balance if balance else None, "tell": tell if progress else None}
+    state, rows, kept = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
+    run = strain_dataset(state, rows, parts)
+    _add_snapshots(run, kept, wanted)
+    return run.assign_attrs(
+        {
+            **attributes(cluster),
+            "strain_rate": strain_rate,
+            "scheme": scheme,
+            "static_from": static,
+            "phi_start": first,
+            "radius_of_gyration": radius_of_gyration(cluster.grain.position, cluster.grain.mass),
+        }
+    )
+
+
+def prepared(cluster, parts, settings):
+    """State of a cluster in its box at the start, and the key of its checkpoints."""
+    grain = cluster.grain
+    pairs = touching_pairs(grain.position, grain.radius, parts.box)
+    state = new_state(grain.position, grain.radius, grain.material, pairs, *parts)
+    return state, checkpoints.fingerprint([grain.position, grain.radius], grain.material, parts, settings)
+
+
+def attributes(cluster):
+    """What the file of a run says of the aggregate, dict."""
+    material = cluster.grain.material
+    return {
+        "material": material.name,
+        **{field.name: getattr(material, field.name) for field in fields(material) if field.name != "name"},
+        "n_monomers": cluster.grain.n_monomers,
+        "seed": -1 if cluster.grain.seed is None else cluster.grain.seed,
+        "monomer_radius": cluster.radius,
+        "time_unit": cluster.time_unit,
+        "rolling_pressure": cluster.rolling_pressure,
+    }
+
+
+def _positive(name, value):
+    if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
+        raise InputError(f"{name} is {value!r}; it must be a number above 0.")
+    return float(value)
+
+
+def _box(cluster, strain_rate, until_phi, length, scheme):
+    """The box at the start, the filling factor in it, and that at the end."""
+    position, radius = cluster.grain.position, cluster.grain.radius
+    spread = (position + radius[:, None]).max(axis=0) - (position - radius[:, None]).min(axis=0)
+    if length is None:
+        length = float(spread.max())
+    length = _positive("box_length", length)
+    if length < 2.0 * radius.max():
+        raise InputError(f"box_length is {length:g} m; it must be at least {2.0 * radius.max():g} m, a monomer.")
+    if length < (1.0 - 1e-12) * spread.max():
+        raise InputError(
+            f"box_length is {length:g} m; it must be at least {spread.max():g} m, the greatest extent of the cluster, "
+            "so that its copies do not overlap."
+        )
+    first = cluster.volume / length**3
+    until_phi = _positive("until_phi", until_phi)
+    if not first < until_phi <= DENSEST:
+        raise InputError(
+            f"until_phi is {until_phi:g}; it must be above {first:.3g}, the filling factor at the start, and at most "
+            f"{DENSEST}, that of random close packing, beyond which spheres only deform."
+        )
+    return periodic(length, box_rate(strain_rate, cluster.time_unit), scheme=scheme), first, until_phi
+
+
+def _static_from(cluster, box):
+    """Filling factor from which on the compression is static; a warning where it is not for most of the way."""
+    grain = cluster.grain
+    about = grain.n_monomers, cluster.radius, grain.material.density, cluster.rolling_pressure
+    static = static_from(box.rate_x, *about)
+    if static > NOT_STATIC:
+        warnings.warn(
+            f"the box shrinks so fast that inertia dominates: the compression is static from phi = {static:.2g} on; "
+            "take a lower strain_rate",
+            UserWarning,
+            stacklevel=3,
+        )
+    return static
+
+
+def _check_balance(row):
+    allowed = [share for phi, share in BALANCE.items() if row["phi"] >= phi]
+    if allowed and not abs(row["energy_residual"]) <= allowed[-1] * abs(row["work"]):
+        raise RuntimeError(
+            f"at phi = {row['phi']:.3g} the balance of energy is off by {row['energy_residual']:.3g} J, "
+            f"{abs(row['energy_residual'] / row['work']):.2%} of the work of the box; at most {allowed[-1]:.1%} is "
+            "allowed: take a smaller time step"
+        )
+
+
+def _add_snapshots(run, kept, wanted):
+    """Positions at some filling factors."""
+    at = np.array(wanted, dtype=int) - 1
+    about = {"units": "1", "long_name": "filling factor of the snapshot"}
+    run["snapshot_phi"] = ("snapshot", run["phi"].values[at], about)
+    about = {"units": "m", "long_name": "edge of the box at the snapshot"}
+    run["snapshot_box_length"] = ("snapshot", run["box_length"].values[at, 0], about)
+    about = {"units": "m", "long_name": "centres at the snapshot, not wrapped into the box"}
+    run["snapshot_position"] = (("snapshot", "monomer", "axis"), kept, about)

@@ -1,0 +1,67 @@
+"""How slow is slow: the strain rate of the box, and from which filling factor on a compression is static."""
+
+import math
+
+from ratd.laws.johnson_kendall_roberts import contact_time
+
+__all__ = ["INERTIAL_SHARE", "box_rate", "static_from", "time_unit"]
+
+INERTIAL_SHARE = 0.05
+"""Part of P_0 phi^3 that the pressure of the inertia may be where a compression counts as static."""
+
+
+def time_unit(material, monomer_radius):
+    """Unit of time t_0 [s] of equal monomers.
+
+    Parameters
+    ----------
+    material : Material
+    monomer_radius : float
+        r_0 [m].
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Eq. 2, with E* where they print E; see `contact_time`.
+    """
+    mass = 4.0 / 3.0 * math.pi * material.density * monomer_radius**3
+    return contact_time(0.5 * mass, 0.5 * monomer_radius, material.reduced_modulus, material.surface_energy)
+
+
+def box_rate(strain_rate, time_unit):
+    """H = (dL/dt)/L = -2 C_v/t_0 [1/s] of a box that shrinks with the strain rate C_v.
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Eqs. 6 and 7.
+    """
+    return -2.0 * strain_rate / time_unit
+
+
+def static_from(rate, n, monomer_radius, density, rolling_pressure):
+    """Filling factor from which on inertia is small: rho (H L)^2/8 = 0.05 P_0 phi^3.
+
+    Parameters
+    ----------
+    rate : float
+        H [1/s].
+    n : int
+        Number of monomers.
+    monomer_radius : float
+        r_0 [m].
+    density : float
+        rho_0 [kg m-3] of the solid.
+    rolling_pressure : float
+        P_0 [Pa].
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    rho = rho_0 phi and L = (4/3 pi N/phi)^(1/3) r_0. A box of the size L that shrinks at the rate H carries the mean
+    square speed (H L)^2/4 along each axis at its faces, of which the mean over the box is a third; rho (H L)^2/8 is by
+    how much the pressure differs between a box that carries everything along and one in which monomers fly straight.
+    """
+    size = (4.0 / 3.0 * math.pi * n) ** (1.0 / 3.0) * monomer_radius
+    return (density * (rate * size) ** 2 / (8.0 * INERTIAL_SHARE * rolling_pressure)) ** 0.375

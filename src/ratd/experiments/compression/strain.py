@@ -1,0 +1,208 @@
+"""The loop that compression and tension share: a box that changes at a given rate, and records of what is in it."""
+
+import math
+import time as clock
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
+from ratd.engine import checkpoint as checkpoints
+from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
+from ratd.engine.state import State, monomer_rows
+from ratd.engine.step import run, until
+from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
+from ratd.observables.pressure import COMPONENTS, volume
+
+__all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
+
+CHECKPOINT_INTERVAL = 60.0
+PROGRESS_INTERVAL = 2.0
+"""Wall time [s] between two checkpoints, and two calls of `progress`."""
+
+# name -> dimension after `record`, units, meaning
+RECORDS = {
+    "time": ("", "s", "time since the start"),
+    "phi": ("", "1", "filling factor, volume of the monomers over that of the box"),
+    "phi_mean": ("", "1", "filling factor in the middle of the time since the last record"),
+    "box_length": ("axis", "m", "edges of the box"),
+    "pressure": ("", "Pa", "pressure, mean since the last record, at phi_mean"),
+    "pressure_tensor": ("component", "Pa", "pressure, mean since the last record, at phi_mean"),
+    "n_contacts": ("", "1", "number of contacts"),
+    "kinetic_translation": ("", "J", "kinetic energy of the centres, relative to the box"),
+    "kinetic_spin": ("", "J", "kinetic energy of the spins"),
+    **{f"stored_{mode}": ("", "J", f"potential energy of the contacts, {mode}") for mode in STORED},
+    **{f"dissipated_{way}": ("", "J", f"energy dissipated so far, {way}") for way in DISSIPATED},
+    "work": ("", "J", "work of the box so far, -int P dV"),
+    "energy_residual": ("", "J", "what the balance lacks: kinetic + stored + dissipated - work, since the start"),
+}  # fmt: skip
+SIZES = {"": 1, "axis": 3, "component": 6}
+LABELS = {"axis": ["x", "y", "z"], "component": list(COMPONENTS)}
+
+
+def columns():
+    """Place of each quantity of `RECORDS` in a row: name -> (first, width)."""
+    place, at = {}, 0
+    for name, (dimension, _, _) in RECORDS.items():
+        place[name] = at, SIZES[dimension]
+        at += SIZES[dimension]
+    return place
+
+
+COLUMNS = columns()
+
+
+class Parts(NamedTuple):
+    """What a run is put together from.
+
+    Attributes
+    ----------
+    law, box, integrator : parts
+    """
+
+    law: object
+    box: object
+    integrator: object
+
+
+def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=None, stop=None, tell=None):
+    """Move a state on in a box that changes, and make records.
+
+    Parameters
+    ----------
+    state : State
+        At rest against the box, time 0.
+    parts : Parts
+    marks : sequence of float
+        Times of the records [s], ascending.
+    key : str
+        See `ratd.engine.checkpoint.fingerprint`.
+    checkpoint : path-like, optional
+        Where to keep what is needed to go on after a kill, with the same bits.
+    snapshots : sequence of int
+        Numbers of the records at which positions are kept.
+    check : callable, optional
+        ``check(row)``, a dict of one record, raises where something is wrong.
+    stop : callable, optional
+        ``stop(rows)``: whether to end before the last mark, of the table of records, (m, columns).
+    tell : callable, optional
+        ``tell(row, seconds_to_go)`` every few seconds.
+
+    Returns
+    -------
+    state : State
+    rows : (m, columns) float64 array
+        Records, see `COLUMNS`; the first is that of the start, without a pressure.
+    kept : (s, n, 3) float64 array
+        Positions at the snapshots [m], unwrapped, in the order of the input.
+    """
+    law, box, integrator = parts
+    drive = squeezing()
+    loaded = checkpoints.load(checkpoint, key)
+    if loaded is None:
+        rows = [_row(state, parts, None)]
+        kept = [positions(state)] if 0 in snapshots else []
+    else:
+        state, tables = loaded
+        rows, kept = list(tables["rows"]), list(tables["kept"])
+    start = saved = told = clock.monotonic()
+    begun = rows[-1][0]
+    for number in range(len(rows), len(marks) + 1):
+        if stop is not None and stop(np.array(rows)):
+            break
+        state, _ = run(state, law, drive, box, integrator, until(time=marks[number - 1]))
+        rows.append(_row(state, parts, rows))
+        if number in snapshots:
+            kept.append(positions(state))
+        if check is not None:
+            check(as_dict(rows[-1]))
+        now = clock.monotonic()
+        if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
+            checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
+            saved = now
+        if tell is not None and now - told > PROGRESS_INTERVAL:
+            done = (rows[-1][0] - begun) / (marks[-1] - begun)
+            tell(as_dict(rows[-1]), (now - start) * (1.0 / done - 1.0))
+            told = now
+    kept = np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
+    return state, np.array(rows), kept
+
+
+def positions(state):
+    """Centres [m], unwrapped, in the order of the input, (n, 3)."""
+    return monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
+
+
+def as_dict(row):
+    """A row as a dict, arrays where a quantity has several numbers."""
+    return {name: row[at] if width == 1 else row[at : at + width] for name, (at, width) in COLUMNS.items()}
+
+
+def _row(state, parts, rows):
+    """One record; starts a new mean of the pressure."""
+    law, box, _ = parts
+    now = in_step(state, law, box)
+    moving, spinning = kinetic(now, 0.0, False)
+    held, gone = stored(now, law, False), dissipated(now, law)
+    size = volume(state, box)
+    monomers = monomer_rows(state)
+    phi = 4.0 / 3.0 * math.pi * float(np.sum(monomers[:, RADIUS] ** 3)) / size
+    tensor = mean_pressure_tensor(state, box)
+    middle = phi
+    if rows is not None:
+        # The mean is that of P V; the volume in the middle of the time makes it a pressure.
+        middle = math.sqrt(phi * rows[-1][COLUMNS["phi"][0]])
+        tensor = tensor * middle / phi
+    total = moving + spinning + held.sum() + gone.sum() - state.drive[WORK]
+    row = [state.scalar[TIME], phi, middle, *box.edges(state.scalar), tensor[:3].mean(), *tensor]
+    row += [state.counter[CONTACTS], moving, spinning, *held, *gone, state.drive[WORK]]
+    # The first row keeps what the balance begins with.
+    return np.array([*row, total if rows is None else total - rows[0][-1]])
+
+
+def strain_dataset(state, rows, parts):
+    """Records, last positions and the state of a run, as a dataset.
+
+    Parameters
+    ----------
+    state : State
+    rows : (m, columns) array
+        From `strain`; the first row is left out.
+    parts : Parts
+
+    Returns
+    -------
+    xarray.Dataset
+        `RECORDS` along ``record``, ``position`` and ``radius`` along ``monomer`` in the order of the input, and the
+        arrays of the state, ``state_...``, from which `state_of` goes on.
+    """
+    variables = {}
+    for name, (dimension, units, meaning) in RECORDS.items():
+        at, width = COLUMNS[name]
+        values = rows[1:, at : at + width]
+        values = values if dimension else values[:, 0]
+        if name == "n_contacts":
+            values = values.astype("i8")
+        dims = ("record", dimension) if dimension else ("record",)
+        variables[name] = (dims, values.copy(), {"units": units, "long_name": meaning})
+    about = {"units": "m", "long_name": "centres at the end, not wrapped into the box"}
+    variables["position"] = (("monomer", "axis"), positions(state), about)
+    radius = monomer_rows(state)[np.argsort(state.identity), RADIUS]
+    variables["radius"] = ("monomer", radius.copy(), {"units": "m", "long_name": "radii"})
+    for name, array in state._asdict().items():
+        dims = tuple(f"{name}_{axis}" for axis in range(array.ndim))
+        variables[f"state_{name}"] = (dims, array.copy())
+    attributes = {
+        "steps": int(state.counter[STEPS]),
+        "timestep": float(state.scalar[DT]),
+        "mass": float(monomer_rows(state)[:, MASS].sum()),
+        "law": repr(parts.law),
+        "integrator": repr(parts.integrator),
+    }
+    return xr.Dataset(variables, coords=LABELS, attrs=attributes)
+
+
+def state_of(run):
+    """The state at the end of a run, from the dataset of `strain_dataset`."""
+    return State(**{name: run[f"state_{name}"].values.copy() for name in State._fields})

@@ -1,0 +1,262 @@
+"""What compressions say of the compressive strength: ratios to P_0 phi^3, fits, and who dissipates the energy."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ratd.base.errors import InputError
+from ratd.base.statistics import jackknife_error
+from ratd.experiments.compression.tables import BIN, bins, in_bins
+
+__all__ = [
+    "FIT_RANGE",
+    "Fit",
+    "anisotropy",
+    "compressive_strength",
+    "fit_power_law",
+    "fit_with_limit",
+    "mean_pressure",
+    "phi_at",
+    "rates",
+    "ratio_at",
+    "slope_of_structure",
+]
+
+FIT_RANGE = (0.03, 0.12)
+"""Filling factors between which the power law is fitted."""
+LIMIT_RANGE = (0.1, 0.5)
+"""Filling factors between which the law with a greatest filling factor is fitted."""
+NEAR = 1.11
+"""A value at phi is that of all bins from phi/NEAR to phi NEAR."""
+
+
+class Fit(NamedTuple):
+    """Numbers fitted to the mean over seeds, with standard errors by leaving out one seed at a time.
+
+    Attributes
+    ----------
+    value, error : (k,) float64 array
+        The error is NaN for a single seed.
+    n : int
+        Number of seeds.
+    """
+
+    value: np.ndarray
+    error: np.ndarray
+    n: int
+
+
+def _fitted(pressure, fit):
+    """A `Fit` of ``fit(mean pressure)``, with pressures (seeds, bins)."""
+    n = len(pressure)
+    value = np.atleast_1d(fit(pressure.mean(axis=0)))
+    if n < 2:
+        return Fit(value, np.full(len(value), np.nan), n)
+    left = np.array([np.atleast_1d(fit(np.delete(pressure, k, axis=0).mean(axis=0))) for k in range(n)])
+    return Fit(value, np.array([jackknife_error(column) for column in left.T]), n)
+
+
+def _within(table, low, high):
+    """Filling factors of bins inside a range, and pressures there, (seeds, bins), of seeds that reach all of them."""
+    phi = table["phi"].values
+    inside = (phi >= low) & (phi <= high)
+    pressure = table["pressure"].values[:, inside]
+    whole = np.isfinite(pressure).all(axis=1)
+    if not inside.any() or not whole.any() or phi.max() * BIN < high / NEAR:
+        raise InputError(f"no run covers the filling factors from {low:g} to {high:g}.")
+    return phi[inside], pressure[whole]
+
+
+def fit_power_law(table, low=FIT_RANGE[0], high=FIT_RANGE[1]):
+    """Exponent n and prefactor of P = c P_0 phi^n, and c where n is 3.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        Of the kind ``compression_set``.
+    low, high : float
+        Range of phi.
+
+    Returns
+    -------
+    Fit
+        Of (n, c, c_3): c of a free exponent is told at phi = 0.1, where it is P/(P_0 phi^3); c_3 is the geometric mean
+        of P/(P_0 phi^3) over the bins. Least squares in ln P, every bin with the same weight.
+
+    Notes
+    -----
+    P may be negative in a bin of a small cluster; such bins of the mean are left out.
+    """
+    phi, pressure = _within(table, low, high)
+    ratio = pressure / table["rolling_pressure"].values[0] / phi**3
+
+    def fit(mean):
+        good = mean > 0.0
+        x, y = np.log(phi[good] / 0.1), np.log(mean[good])
+        slope, constant = np.polyfit(x, y, 1)
+        return np.array([3.0 + slope, np.exp(constant), np.exp(y.mean())])
+
+    return _fitted(ratio, fit)
+
+
+def fit_with_limit(table, low=LIMIT_RANGE[0], high=LIMIT_RANGE[1]):
+    """c and phi_max of P = c P_0 (1/phi - 1/phi_max)^-3.
+
+    Returns
+    -------
+    Fit
+        Of (c, phi_max): (P_0/P)^(1/3) is a straight line in 1/phi, fitted with weights that make relative errors of P
+        count alike.
+    """
+    phi, pressure = _within(table, low, high)
+    P_0 = table["rolling_pressure"].values[0]
+
+    def fit(mean):
+        y = np.cbrt(P_0 / mean)
+        slope, constant = np.polyfit(1.0 / phi, y, 1, w=1.0 / y)
+        return np.array([slope**-3.0, -slope / constant])
+
+    return _fitted(pressure, fit)
+
+
+def ratio_at(table, phi):
+    """P/(P_0 phi^3) near a filling factor, `Fit` of one number."""
+    phi, pressure = _within(table, phi / NEAR, phi * NEAR)
+    ratio = pressure / table["rolling_pressure"].values[0] / phi**3
+    return _fitted(ratio, np.mean)
+
+
+def scatter_at(table, phi):
+    """Standard deviation of P over its mean between single clusters near a filling factor."""
+    phi, pressure = _within(table, phi / NEAR, phi * NEAR)
+    single = (pressure / phi**3).mean(axis=1)
+    return float(single.std(ddof=1) / single.mean()) if len(single) > 1 else np.nan
+
+
+def mean_pressure(table, *, alone=False):
+    """Mean over seeds of P [Pa] and its standard error, (bins,) each.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+    alone : bool
+        Whether runs that begin at a higher filling factor count with P = 0 before, as in Fig. 6 of the paper: their
+        clusters do not touch each other yet. Else bins are NaN that some run lacks.
+    """
+    pressure = table["pressure"].values.copy()
+    if alone:
+        before = np.cumsum(np.isfinite(pressure), axis=1) == 0
+        pressure[before] = 0.0
+    n = len(pressure)
+    error = pressure.std(axis=0, ddof=1) / np.sqrt(n) if n > 1 else np.full(pressure.shape[1], np.nan)
+    return pressure.mean(axis=0), error
+
+
+def phi_at(table, pressure):
+    """Filling factor at which the mean pressure reaches a value [Pa], `Fit` of one number."""
+    phi, all_pressures = _within(table, 0.05, 0.45)
+
+    def fit(mean):
+        rising = np.maximum.accumulate(np.maximum(mean, 1e-300))
+        return np.exp(np.interp(np.log(pressure), np.log(rising), np.log(phi)))
+
+    return _fitted(all_pressures, fit)
+
+
+def rates(table, ways):
+    """Energy dissipated per step in ln phi [J], by way, mean over seeds.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+    ways : sequence of str
+
+    Returns
+    -------
+    phi : (k,) array
+        Between every fourth bin and the next.
+    rate : dict of str to (k,) array
+    """
+    every = np.arange(0, table.sizes["phi_bin"], 4)
+    phi = table["phi"].values[every]
+    found = {}
+    for way in ways:
+        energy = table[f"dissipated_{way}"].values[:, every]
+        found[way] = np.diff(energy, axis=1).mean(axis=0) / np.diff(np.log(phi))
+    return np.sqrt(phi[1:] * phi[:-1]), found
+
+
+def share_at(table, way, phi):
+    """Part of what rolling, twisting, sliding and damping have dissipated up to phi that went one way, a float."""
+    k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
+    ways = ("damping", "sliding", "rolling", "twisting")
+    energy = {name: float(np.nanmean(table[f"dissipated_{name}"].values[:, k])) for name in ways}
+    return energy[way] / sum(energy.values())
+
+
+def overtakes(table, first, second, low=0.02):
+    """Filling factor from which on one way dissipates faster than another; NaN where it never does."""
+    phi, rate = rates(table, (first, second))
+    good = np.isfinite(rate[first]) & np.isfinite(rate[second]) & (phi > low)
+    behind = np.flatnonzero(good & (rate[first] <= rate[second]))
+    ahead = np.flatnonzero(good & (rate[first] > rate[second]))
+    after = ahead[ahead > (behind.max() if len(behind) else -1)]
+    return float(phi[after.min()]) if len(after) else np.nan
+
+
+def anisotropy(table):
+    """Standard deviation of P_xx, P_yy, P_zz over P, mean over seeds, (bins,)."""
+    axes = np.stack([table[f"pressure_{name}"].values for name in ("xx", "yy", "zz")])
+    return (axes.std(axis=0, ddof=1) / table["pressure"].values).mean(axis=0)
+
+
+def slope_of_structure(table, snapshot, low=2.5, high=8.0):
+    """d ln N(<r)/d ln r between two distances in r_0, mean over seeds, a float."""
+    distance = table["distance"].values
+    inside = (distance >= low) & (distance <= high)
+    return log_slope(distance[inside], table["number_within"].values[:, snapshot, inside])
+
+
+def log_slope(x, y):
+    """d ln y/d ln x of the mean of rows y over what is finite; NaN where fewer than two points are."""
+    y = y[np.isfinite(y).any(axis=1)]
+    there = np.isfinite(y).all(axis=0) if len(y) else np.zeros(len(x), dtype=bool)
+    return float(np.polyfit(np.log(x[there]), np.log(y[:, there].mean(axis=0)), 1)[0]) if there.sum() > 1 else np.nan
+
+
+def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
+    """Strength of compressed clusters against P_0 phi^3.
+
+    Parameters
+    ----------
+    run : xarray.Dataset or list of xarray.Dataset
+        What `ratd.compress` returned, for one cluster or for some that differ in their seeds alone.
+    low, high : float
+        Filling factors between which the power law is fitted.
+
+    Returns
+    -------
+    dict
+        ``exponent``; ``prefactor``, P/(P_0 phi^3) at phi = 0.1 from the fit; ``ratio``, the geometric mean of
+        P/(P_0 phi^3) in the range; each with ``_error`` beside it, NaN for a single run; ``n``, number of runs.
+
+    Raises
+    ------
+    InputError
+        If no run covers the range.
+    """
+    found = list(run) if isinstance(run, list | tuple) else [run]
+    first = min(bins(each["phi_mean"].values[:1])[0] for each in found)
+    last = max(bins(each["phi_mean"].values[-1:])[0] for each in found)
+    table = xr.Dataset({"phi": ("phi_bin", BIN ** (np.arange(first, last + 1) + 0.5))})
+    table["pressure"] = (
+        ("seed_number", "phi_bin"),
+        np.array([in_bins(each, first, last)["pressure"] for each in found]),
+    )
+    table["rolling_pressure"] = ("seed_number", np.array([each.attrs["rolling_pressure"] for each in found]))
+    fit = fit_power_law(table, low, high)
+    names = ("exponent", "prefactor", "ratio")
+    values = dict(zip(names, fit.value.tolist(), strict=True))
+    errors = dict(zip([f"{name}_error" for name in names], fit.error.tolist(), strict=True))
+    return {**values, **errors, "n": fit.n}

@@ -1,0 +1,139 @@
+"""Pull a compressed cluster until it comes apart, in a periodic box that grows."""
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.drives.squeezing import squeezing
+from ratd.engine import checkpoint as checkpoints
+from ratd.engine.layout import TIME
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.step import run, until
+from ratd.experiments.compression.run import K_N, TIMESTEP_FACTOR
+from ratd.experiments.compression.static import box_rate
+from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
+from ratd.experiments.relax import find_rest, start_anew
+from ratd.geometry.box import periodic
+from ratd.laws.jkr_with_springs import jkr
+
+__all__ = ["AXES", "stretch", "tension"]
+
+AXES = {"x": (1.0, 0.0, 0.0), "xyz": (1.0, 1.0, 1.0)}
+"""Axes along which the box may grow."""
+RECORD_STRAIN = 0.005
+"""ln L along a pulled axis between two records."""
+LONGEST = 2.0
+"""ln L along a pulled axis at which the pulling ends at the latest."""
+FALLEN = 0.3
+"""The pulling ends where the tension has fallen to this part of its greatest value."""
+WINDOW = 4
+"""Records over which the tension is averaged where its greatest value is looked for: 2 % in L."""
+REST_STEPS = 200
+"""Steps over which the pressure of the aggregate at rest is averaged."""
+
+
+def stretch(compressed, strain_rate=3e-6, *, axes="x", law=None, timestep_factor=TIMESTEP_FACTOR, integrator=None,
+            checkpoint=None, progress=None):  # fmt: skip
+    """Let a compressed aggregate come to rest in its box, and pull it apart.
+
+    Parameters
+    ----------
+    compressed : xarray.Dataset
+        What `ratd.compress` returned.
+    strain_rate : float
+        The box grows with dL/dt = 2 C_v L/t_0.
+    axes : {"x", "xyz"}
+        Axes along which it grows; the others stay.
+    law, timestep_factor, integrator, checkpoint
+        As of `ratd.compress`; the law has to be that of the compression.
+    progress : callable, optional
+        Called every few seconds as ``progress(phi, tension, seconds_to_go)``.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of `ratd.compress`, without snapshots. ``tension`` is -P_xx, or -P where all axes are pulled. The attributes
+        hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, ``phi_strength``, where that is,
+        ``phi_start`` and ``residual_pressure`` [Pa], what the aggregate at rest presses with.
+
+    Raises
+    ------
+    InputError
+        If an argument is not usable.
+    RuntimeError
+        If the aggregate does not come to rest, or the integration fails.
+
+    References
+    ----------
+    Tatsuuma, Kataoka & Tanaka (2019), ApJ 874, 159, as recalled. Whether they pull one axis or three is not known here.
+    """
+    if axes not in AXES:
+        raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
+    if "state_monomer" not in compressed:
+        raise InputError("compressed must be what ratd.compress returned, with the state at its end.")
+    if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
+        raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
+    law = jkr(damping="constant", constant_damping=K_N) if law is None else law
+    integrator = leapfrog(timestep_factor=timestep_factor) if integrator is None else integrator
+    edges = compressed["box_length"].values[-1]
+    rate = -box_rate(strain_rate, compressed.attrs["time_unit"])
+    parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
+    marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
+
+    state = state_of(compressed)
+    key = checkpoints.fingerprint(list(state), parts)
+    if checkpoints.load(checkpoint, key) is None:
+        state = _at_rest(state, Parts(law, periodic(edges), integrator))
+
+    def tell(row, seconds_to_go):
+        progress(row["phi"], -row["pressure_tensor"][0], seconds_to_go)
+
+    def done(rows):
+        pull = tension(rows[1:], axes)
+        return len(pull) > 5 * WINDOW and pull[-WINDOW:].mean() < FALLEN * _smooth(pull).max()
+
+    state, rows, _ = strain(
+        state, parts, marks, key=key, checkpoint=checkpoint, stop=done, tell=tell if progress else None
+    )
+    found = strain_dataset(state, rows, parts)
+    pull = _smooth(tension(rows[1:], axes))
+    best = int(np.argmax(pull))
+    found["tension"] = (
+        "record",
+        tension(rows[1:], axes),
+        {"units": "Pa", "long_name": "tension along the pulled axes"},
+    )
+    about = {"tensile_strength": pull[best], "phi_strength": _smooth(found["phi_mean"].values)[best]}
+    about |= {"phi_start": compressed["phi"].values[-1], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
+    kept = {name: compressed.attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
+    return found.assign_attrs(
+        {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
+    )
+
+
+def tension(rows, axes):
+    """-P_xx [Pa], or -P where all axes are pulled, of records (m, columns), (m,)."""
+    at = COLUMNS["pressure_tensor" if axes == "x" else "pressure"][0]
+    return -rows[:, at]
+
+
+def _smooth(values):
+    """Means of `WINDOW` neighbours, fewer where there are fewer."""
+    width = min(WINDOW, len(values))
+    return np.convolve(values, np.full(width, 1.0 / width), mode="valid")
+
+
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _at_rest(state, parts):
+    """The state come to rest in a box that does not change, as the start of a run.
+
+    The first record of the run then has the mean pressure of the last `REST_STEPS`.
+    """
+    state.scalar[TIME] = 0.0
+    state = find_rest(state, parts.law, squeezing(), parts.box, parts.integrator)
+    start_anew(state, parts.law, parts.integrator)
+    state, _ = run(state, parts.law, squeezing(), parts.box, parts.integrator, until(steps=REST_STEPS))
+    state.scalar[TIME] = 0.0
+    return state

@@ -1,0 +1,244 @@
+"""Tables of a set of compressions, of which figures are drawn: the stage `compression_set` of the pipeline."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from ratd.aggregates.grain import Grain
+from ratd.base.materials import Material
+from ratd.base.statistics import mean_of
+from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
+from ratd.experiments.compression.grow import grown
+from ratd.experiments.compression.strain import LABELS
+from ratd.laws.contact_constants import reduced_radius, rolling_energy
+from ratd.observables.energy import DISSIPATED, STORED
+from ratd.observables.structure import cumulative_number, radius_of_gyration
+from ratd.pipeline import io
+from ratd.pipeline.blocks import material_of
+from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
+
+__all__ = ["BIN", "DISTANCES", "bins", "in_bins", "run_set", "set_of", "snapshots"]
+
+BIN = 1.04
+"""Ratio of the ends of a bin of the filling factor."""
+DISTANCES = np.round(2.0 * 1.12 ** np.arange(44), 3)
+"""Distances r/r_0 at which N(<r) is tabulated, from 2 to 262."""
+OF_RUN = ("phi_start", "static_from", "radius_of_gyration", "rolling_pressure", "strain_rate", "timestep")
+
+
+GYRATION_SEEDS = 60
+"""Clusters that are grown for the mean radius of gyration, which takes far less time than a run."""
+
+_BY_PHI = {
+    "pressure": ("Pa", "pressure"),
+    **{f"pressure_{name}": ("Pa", f"component {name} of the pressure") for name in LABELS["component"]},
+    "n_contacts": ("1", "number of contacts"),
+    **{f"stored_{mode}": ("J", f"potential energy of the contacts, {mode}") for mode in STORED},
+    **{f"dissipated_{way}": ("J", f"energy dissipated so far, {way}") for way in DISSIPATED},
+    "work": ("J", "work of the box so far"),
+    "energy_residual": ("J", "what the balance of energy lacks"),
+}
+SEED, PHI, SNAPSHOT, DISTANCE = "seed_number", "phi_bin", "snapshot", "distance_number"
+register(
+    "compression_set",
+    Kind(
+        "Compression of clusters with equal settings and different seeds",
+        {
+            **MATERIAL,
+            **over((SEED,), {"seed": ("1", "seed of the cluster"), "steps": ("1", "number of steps")}, dtype="i8"),
+            **over(
+                (SEED,), {name: about for name, about in RUN.items() if name not in ("monomer_radius", "time_unit")}
+            ),
+            **over((PHI,), {"phi": ("1", "filling factor, middle of the bin")}),
+            **over((SEED, PHI), _BY_PHI, nan=True),
+            **over((SNAPSHOT,), {"snapshot_phi": ("1", "filling factor of the snapshots, as asked for")}),
+            **over((DISTANCE,), {"distance": ("1", "distance from the centre of a monomer, over r_0")}),
+            **over(
+                (SEED, SNAPSHOT, DISTANCE),
+                {"number_within": ("1", "mean number of centres within this distance, itself and copies included")},
+                nan=True,
+            ),
+            **over(
+                (),
+                {
+                    "monomer_radius": RUN["monomer_radius"],
+                    "time_unit": RUN["time_unit"],
+                    "mean_radius": ("m", "mean radius of the monomers"),
+                    "mean_square_radius": ("m2", "mean square of the radius"),
+                    "mean_square_gyration": ("m2", "mean square of the radius of gyration of such clusters"),
+                    "mean_square_gyration_error": ("m2", "its standard error"),
+                    "mean_rolling_energy": ("J", "mean over the contacts of the cluster of E_roll"),
+                },
+            ),
+            "n_monomers": Variable((), "i8", "1", "number of monomers"),
+        },
+        attributes=("material", "law", "integrator", "scheme"),
+        references=REFERENCE,
+    ),
+)
+register(
+    "compression_snapshots",
+    Kind(
+        "Snapshots of a cluster in its compression",
+        {
+            **over((SNAPSHOT,), {"phi": ("1", "filling factor"), "box_length": ("m", "edge of the box")}),
+            **over((SNAPSHOT, "monomer"), {axis: MONOMER[axis] for axis in "xyz"}),
+            **over(("monomer",), {"radius": MONOMER["radius"]}),
+        },
+        references=REFERENCE,
+    ),
+)
+
+
+def bins(phi):
+    """Numbers of the bins of filling factors: ``floor(ln phi/ln BIN)``, negative."""
+    return np.floor(np.log(phi) / math.log(BIN) + 1e-9).astype(int)
+
+
+def in_bins(run, first, last):
+    """Means of a run over bins of the filling factor.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        As `ratd.compress` returns it.
+    first, last : int
+        Numbers of the bins.
+
+    Returns
+    -------
+    dict of str to (bins,) array
+        Pressures are means over the records in a bin, other quantities are those of the record nearest to its end below
+        it; NaN where the run does not fill the bin.
+    """
+    number = last - first + 1
+    middle = bins(run["phi_mean"].values) - first
+    weight = np.bincount(middle[(middle >= 0) & (middle < number)], minlength=number).astype(float)
+    weight[weight == 0.0] = np.nan
+
+    def mean(values):
+        inside = (middle >= 0) & (middle < number)
+        return np.bincount(middle[inside], values[inside], minlength=number) / weight
+
+    found = {"pressure": mean(run["pressure"].values)}
+    tensor = run["pressure_tensor"].values
+    found |= {f"pressure_{name}": mean(tensor[:, k]) for k, name in enumerate(LABELS["component"])}
+    centre = BIN ** (np.arange(first, last + 1) + 0.5)
+    nearest = np.clip(np.searchsorted(run["phi"].values, centre), 0, run.sizes["record"] - 1)
+    others = [name for name in run.variables if name.startswith(("stored_", "dissipated_"))]
+    for name in ("n_contacts", *others, "work", "energy_residual"):
+        found[name] = np.where(np.isfinite(weight), run[name].values[nearest], np.nan)
+    return found
+
+
+def set_of(found, clusters):
+    """Table of runs that differ in their seeds alone.
+
+    Parameters
+    ----------
+    found : list of xarray.Dataset
+        Runs, as `ratd.compress` returns them.
+    clusters : list of Grain
+        What was compressed.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of the kind ``compression_set``.
+    """
+    first = min(bins(run["phi_mean"].values[:1])[0] for run in found)
+    last = max(bins(run["phi_mean"].values[-1:])[0] for run in found)
+    binned = [in_bins(run, first, last) for run in found]
+    table = xr.Dataset({"phi": (PHI, BIN ** (np.arange(first, last + 1) + 0.5))})
+    for name in binned[0]:
+        table[name] = ((SEED, PHI), np.array([each[name] for each in binned]))
+    for name in ("seed", "steps", *OF_RUN):
+        table[name] = (SEED, np.array([run.attrs[name] for run in found]))
+    kept = found[0].attrs
+    table["monomer_radius"], table["time_unit"] = kept["monomer_radius"], kept["time_unit"]
+    table["n_monomers"] = kept["n_monomers"]
+    radius = np.concatenate([cluster.radius for cluster in clusters])
+    table["mean_radius"], table["mean_square_radius"] = radius.mean(), np.mean(radius**2)
+    table["mean_rolling_energy"] = np.mean([mean_rolling_energy(cluster) for cluster in clusters])
+    material = clusters[0].material
+    for name in MATERIAL:
+        table[name] = getattr(material, name)
+    _add_structure(table, found)
+    about = {name: kept[name] for name in ("law", "integrator", "scheme")}
+    return table.assign_attrs(material=material.name, **about)
+
+
+def mean_rolling_energy(cluster: Grain):
+    """Mean over the contacts of a cluster of the energy E_roll [J] of rolling by a quarter of a circle."""
+    i, j = cluster.contacts.T
+    R = reduced_radius(cluster.radius[i], cluster.radius[j])
+    own = cluster.material.surface_energy, cluster.material.critical_rolling_displacement
+    return float(np.mean(rolling_energy(R, *own)))
+
+
+def _add_structure(table, found):
+    """N(<r) at the snapshots that most runs have, those that a run lacks NaN."""
+    rounded = [np.round(run["snapshot_phi"].values, 4) for run in found]
+    most = max(rounded, key=len)
+    numbers = np.full((len(found), len(most), len(DISTANCES)), np.nan)
+    for k, run in enumerate(found):
+        for at, phi in enumerate(rounded[k]):
+            place = int(np.argmin(np.abs(np.log(most / phi))))
+            length = run["snapshot_box_length"].values[at]
+            position = np.ascontiguousarray(run["snapshot_position"].values[at])
+            distance = DISTANCES[1.5 * length / run.attrs["monomer_radius"] > DISTANCES]
+            within = cumulative_number(position, (length,) * 3, distance * run.attrs["monomer_radius"])
+            numbers[k, place, : len(distance)] = within
+    table["snapshot_phi"] = (SNAPSHOT, most)
+    table["distance"] = (DISTANCE, DISTANCES)
+    table["number_within"] = ((SEED, SNAPSHOT, DISTANCE), numbers)
+
+
+def gyration(settings):
+    """Mean square of the radius of gyration [m2] of `GYRATION_SEEDS` clusters grown as settings say, and its error."""
+    clusters = (grown(settings, seed) for seed in range(GYRATION_SEEDS))
+    return mean_of([radius_of_gyration(cluster.position, cluster.mass) ** 2 for cluster in clusters])
+
+
+def run_set(files, settings, say):
+    """Table of a set from the files of its runs and clusters; the settings are those of the growth."""
+    found, clusters = [], []
+    for path, cluster in zip(files["runs"], files["clusters"], strict=True):
+        file = io.read(path, "compression")
+        material = material_of(file)
+        run = runs(file)[0]
+        found.append(run)
+        clusters.append(read_cluster(cluster))
+        assert clusters[-1].material == material
+    table = set_of(found, clusters)
+    table["mean_square_gyration"], table["mean_square_gyration_error"] = gyration(settings)
+    say(f"{len(found)} runs of {table['n_monomers'].item()} monomers")
+    return {"compression_set": typed(table)}
+
+
+def typed(table):
+    """The same in the types of its kind."""
+    for name, variable in kind_of("compression_set").variables.items():
+        table[name] = table[name].astype(variable.dtype)
+    return table
+
+
+def snapshots(files, settings, say):
+    """Positions of one run at some filling factors, wrapped into the box about its middle."""
+    run = read_run(files["run"])
+    wanted = [int(np.argmin(np.abs(np.log(run["snapshot_phi"].values / phi)))) for phi in settings["phi"]]
+    length = run["snapshot_box_length"].values[wanted]
+    position = run["snapshot_position"].values[wanted]
+    wrapped = position - length[:, None, None] * np.round(position / length[:, None, None])
+    table = xr.Dataset({"phi": (SNAPSHOT, run["snapshot_phi"].values[wanted]), "box_length": (SNAPSHOT, length)})
+    for k, axis in enumerate("xyz"):
+        table[axis] = ((SNAPSHOT, "monomer"), wrapped[:, :, k])
+    table["radius"] = ("monomer", run["radius"].values)
+    say(f"snapshots at phi = {', '.join(f'{phi:.3g}' for phi in table['phi'].values)}")
+    return {"compression_snapshots": table}
+
+
+def material_from(table):
+    """Material of a table of a set."""
+    return Material(table.attrs["material"], **{name: table[name].item() for name in MATERIAL})

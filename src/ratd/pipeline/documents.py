@@ -1,0 +1,106 @@
+"""Documents: a template that a person wrote, with slots for numbers.
+
+A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
+error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. A *verdict* is ``{{name=holds}}``: it prints
+the word, and is an error when the data give another one. Then a person has to read the sentence again.
+
+Lines between ``<!-- if name -->`` (or ``if not name``) and ``<!-- end -->`` stand only where there are data of this
+name, that is values that begin with ``name.``; such parts may stand in each other.
+"""
+
+import math
+import re
+from difflib import get_close_matches
+from typing import NamedTuple
+
+from ratd.base.errors import InputError
+
+__all__ = ["Measured", "fill", "slots"]
+
+_SLOT = re.compile(r"\{\{\s*([A-Za-z0-9_.-]+)\s*(?:([:=])([^}]*))?\}\}")
+_CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+class Measured(NamedTuple):
+    """A number with its standard error, NaN where it has none."""
+
+    value: float
+    error: float = math.nan
+
+
+def slots(template):
+    """Names of the slots of a template, in their order, list of str."""
+    return [name for name, _, _ in _SLOT.findall(template)]
+
+
+def fill(template, values):
+    """Text of a template with its slots filled.
+
+    Parameters
+    ----------
+    template : str
+    values : dict
+        Name -> number, `Measured`, or text; a verdict is a text.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        One sentence: a slot that no value fits, a number that is not finite, or a verdict that is not the one in the
+        template.
+    """
+    return _SLOT.sub(lambda found: _filled(values, *found.groups()), _kept(template, values))
+
+
+def _kept(template, values):
+    """The lines of a template that are to stand."""
+    names = {name.partition(".")[0] for name in values if "." in name}
+    inside, lines = [], []
+    for line in template.splitlines(keepends=True):
+        condition = _CONDITION.fullmatch(line.strip())
+        if condition is None:
+            lines += [line] if all(inside) else []
+        elif not condition[3]:
+            inside.append((condition[2] in names) is not bool(condition[1]))
+        elif inside:
+            inside.pop()
+        else:
+            raise InputError("the template has an 'end' without an 'if' before it")
+    if inside:
+        raise InputError("the template has an 'if' without an 'end' behind it")
+    return "".join(lines)
+
+
+def _filled(values, name, sign, form):
+    if name not in values:
+        near = ", ".join(get_close_matches(name, values)) or f"{len(values)} others"
+        raise InputError(f"the slot {name} of the template has no value; there are {near}")
+    value = values[name]
+    if sign == "=":
+        if value != form.strip():
+            raise InputError(
+                f"the verdict {name} is {value!r}, but the template says {form.strip()!r}: read the sentences around "
+                "it again"
+            )
+        return form.strip()
+    if isinstance(value, str):
+        return value
+    form = (form or "").strip()
+    error = value.error if isinstance(value, Measured) else math.nan
+    value = value.value if isinstance(value, Measured) else value
+    if not math.isfinite(value):
+        raise InputError(f"the value of {name} is {value}, no finite number")
+    if not form.endswith("±"):
+        return _number(value, form)
+    text = _number(value, form[:-1])
+    return f"{text} ± {_number(error, form[:-1])}" if math.isfinite(error) else text
+
+
+def _number(value, form):
+    text = format(value, form).replace("-", "−") if value else "0"
+    mantissa, e, exponent = text.partition("e")
+    return f"{mantissa}·10{str(int(exponent.replace('−', '-'))).translate(_RAISED)}" if e else text

@@ -1,0 +1,47 @@
+"""Strengths that others have fitted: the numbers that their papers name."""
+
+import numpy as np
+import pytest
+
+import ratd
+from ratd.aggregates.radii import RadiusDistribution, lognormal_radii
+from ratd.aggregates.strength import (
+    compressive_strength_kataoka2013,
+    compressive_strength_tatsuuma2023,
+    filling_factor_guettler2009,
+    rolling_pressure,
+    sound_speed_kataoka2013,
+)
+
+ICE, SILICATE = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
+
+
+def test_p_0_is_that_of_the_paper():
+    ice = rolling_pressure(ICE.surface_energy, ICE.critical_rolling_displacement, 1e-7)
+    silicate = rolling_pressure(SILICATE.surface_energy, SILICATE.critical_rolling_displacement, 6e-7)
+    assert ice == pytest.approx(4.74e5, rel=1e-3)
+    assert silicate * (6e-7) ** 3 == pytest.approx(1.42e-15, rel=2e-3)
+    assert compressive_strength_kataoka2013(0.24, silicate) == pytest.approx(91.0, rel=0.01)
+    assert compressive_strength_tatsuuma2023(0.24, silicate) == pytest.approx(295.0, rel=0.01)
+    assert sound_speed_kataoka2013(1.0, ice, ICE.density) == pytest.approx(10.6, abs=0.05)
+    assert sound_speed_kataoka2013(0.01, silicate, SILICATE.density) == pytest.approx(0.77e-2, rel=0.01)
+
+
+def test_the_laws_agree_at_low_filling_factors():
+    phi = np.array([1e-4, 1e-3])
+    assert compressive_strength_tatsuuma2023(phi, 2.0) == pytest.approx(
+        compressive_strength_kataoka2013(phi, 2.0), rel=0.01
+    )
+
+
+def test_the_dust_cakes_reach_both_of_their_filling_factors():
+    assert filling_factor_guettler2009([1e-9, 1e15]) == pytest.approx([0.12, 0.58], abs=1e-3)
+    assert filling_factor_guettler2009(300.0) == pytest.approx(0.146, abs=1e-3)
+
+
+def test_lognormal_radii_are_the_quantiles_of_the_cut_distribution():
+    own = RadiusDistribution(80e-9, 0.5, 30e-9, 300e-9)
+    radii = lognormal_radii((np.arange(4000) + 0.5) / 4000, own)
+    assert (np.diff(radii) > 0.0).all() and radii[0] > 30e-9 and radii[-1] < 300e-9
+    for k in (1, 3):
+        assert np.mean(radii**k) == pytest.approx(own.moment(k), rel=1e-3)

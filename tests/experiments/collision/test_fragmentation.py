@@ -1,0 +1,69 @@
+"""Pieces of a collision, and the velocity at which clusters begin to come apart."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from ratd.base.errors import InputError
+from ratd.experiments.collision.fragmentation import fragmentation, fragmentation_velocity
+
+
+def made_up(piece, radius, cluster):
+    return xr.Dataset(
+        {name: ("monomer", np.array(v)) for name, v in (("piece", piece), ("radius", radius), ("cluster", cluster))},
+        attrs={"density": 2000.0},
+    )
+
+
+def test_pieces_and_the_two_numbers():
+    """Pieces of 3, 1 and 2 equal spheres: Eqs. 9 and 10 by hand."""
+    found = fragmentation(made_up([0, 0, 1, 2, 2, 0], [1e-6] * 6, [0, 0, 0, 1, 1, 1]))
+    one = 4 / 3 * np.pi * 2000 * 1e-18
+    np.testing.assert_allclose(found["piece_mass"], np.array([3, 2, 1]) * one)
+    assert found["piece_members"].values.tolist() == [3, 2, 1]
+    np.testing.assert_allclose(found["piece_of_a"], [2 / 3, 0, 1])
+    assert float(found["N_s"]) == pytest.approx(1 - 5 / 6) and float(found["X"]) == pytest.approx(1 / 6)
+
+
+def test_mass_counts_not_the_number_of_spheres():
+    found = fragmentation(made_up([0, 1, 1, 1], [2e-6, 1e-6, 1e-6, 1e-6], [0, 1, 1, 1]))
+    assert float(found["X"]) == pytest.approx((8 - 3) / 11) and float(found["N_s"]) == pytest.approx(0.0)
+    np.testing.assert_allclose(found["piece_largest_radius"], [2e-6, 1e-6])
+
+
+def test_one_piece_has_no_second():
+    found = fragmentation(made_up([0, 0], [1e-6, 1e-6], [0, 1]))
+    assert float(found["X"]) == 1.0 and float(found["N_s"]) == 0.0
+
+
+def table(velocities, mean, number=40, scatter=0.05, seed=1):
+    rng = np.random.default_rng(seed)
+    rows = [(v, mean(v) + scatter * rng.normal()) for v in velocities for _ in range(number)]
+    return pd.DataFrame(rows, columns=["velocity", "X"])
+
+
+def test_velocity_of_a_known_fall():
+    """X = 1 - v/10 falls through 0.15 at 8.5; the error is that of the scatter, 0.05/sqrt(40)/slope to a factor."""
+    found = fragmentation_velocity(table([2, 4, 6, 8, 10], lambda v: 1 - v / 10))
+    assert found["velocity"] == pytest.approx(8.5, abs=3 * found["error"])
+    expected = 10 * 0.05 / np.sqrt(40) * np.hypot(0.75, 0.25)
+    assert 0.5 * expected < found["error"] < 2 * expected and found["found"] == 1.0
+    assert found["low"] < found["velocity"] < found["high"]
+    assert (found["below"], found["above"]) == (8, 10)
+
+
+def test_the_last_fall_counts_and_none_gives_nan():
+    steps = {1: 0.9, 2: 0.1, 3: 0.6, 4: 0.0}
+    assert fragmentation_velocity(table(steps, steps.get, scatter=0.0))["velocity"] == pytest.approx(3.75)
+    none = fragmentation_velocity(table([1, 2], lambda v: 0.9, scatter=0.0))
+    assert np.isnan(none["velocity"]) and np.isnan(none["error"]) and np.isnan(none["below"]) and none["found"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [(pd.DataFrame({"velocity": [1.0]}), "no column 'X'"), (pd.DataFrame({"velocity": [], "X": []}), "no collisions")],
+)
+def test_bad_tables_are_refused(rows, words):
+    with pytest.raises(InputError, match=words):
+        fragmentation_velocity(rows)

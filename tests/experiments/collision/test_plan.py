@@ -1,0 +1,129 @@
+"""The plan of the collisions: cells, rotations, files, settings, and what is refused."""
+
+import copy
+
+import pytest
+import yaml
+
+from ratd.base.errors import InputError
+from ratd.experiments.collision.plan import RUNS, check
+from ratd.experiments.collision.stages import law_from, radii_from
+from ratd.pipeline.config import merge
+from tiny_pipeline import ROOT
+
+FILES = [ROOT / "config" / f"{name}.yaml" for name in ("config", "collision")]
+SCHEMAS = ROOT / "config" / "schema"
+
+
+def config(**own):
+    merged = {}
+    for path in FILES:
+        merged = merge(merged, yaml.safe_load(path.read_text()))
+    merged["materials_file"] = str(ROOT / "config" / "materials.yaml")
+    merged["collision"] = merge(merged["collision"], own)
+    return merged
+
+
+def entry(**own):
+    base = {
+        "laws": ["velocity"],
+        "clusters": ["570nm"],
+        "samples": 1,
+        "velocities": [15, 30],
+        "rotations": {"first": 0, "number": 2},
+        "impact_parameter": 0,
+        "timestep_ps": 20,
+        "duration_us": 3,
+    }
+    return base | own
+
+
+NO_PICTURES = {"every": 1, "runs": []}
+PICTURE = {"law": "velocity", "cluster": "mrn", "sample": 1, "velocity": 15, "rotation": 0}
+
+
+def plan(*entries, **own):
+    return check(config(runs=list(entries), snapshots=NO_PICTURES, **own), SCHEMAS)
+
+
+def test_the_paper():
+    """Seven kinds of clusters, ten velocities, ten rotations, 3 us; MRN at 1 ps."""
+    paper = check(config(), SCHEMAS)
+    assert len(paper.cells) == 70 and len(list(paper.queue())) == 700
+    assert {cell.duration for cell in paper.cells} == {3e-6}
+    assert {cell.timestep for cell in paper.cells if cell.cluster == "mrn"} == {1e-12}
+    assert len(paper.figures) == 11 and len(set(paper.run_files())) == 70
+    assert paper.figure_input("figure3")["runs"] == [
+        RUNS.format(law="velocity", cluster="mrn", sample=1, velocity=15, impact=0)
+    ]
+
+
+@pytest.mark.parametrize("name", ["quick", "collision_default", "collision_study"])
+def test_the_other_configs(name):
+    merged = merge(config(), yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()))
+    other = check(merged, SCHEMAS)
+    assert other.cells and all(other.settings_of(cell)["records"] >= 2 for cell in other.cells)
+    for law, cluster in other.pairs():
+        law_from(other.law(law))
+        if other.config["clusters"][cluster]["radii"] == "equal":
+            assert len(radii_from(other.cluster(other.material_of(law), cluster), 1)) > 50
+
+
+def test_rotations_of_several_entries_add_up_in_the_order_of_the_queue():
+    two = plan(entry(), entry(velocities=[30, 45], rotations={"first": 1, "number": 3}))
+    assert [(cell.velocity, cell.rotations) for cell in two.cells] == [
+        (15, (0, 1)),
+        (30, (0, 1, 2, 3)),
+        (45, (1, 2, 3)),
+    ]
+    queue = [(cell.velocity, rotation) for cell, rotation in two.queue()]
+    assert queue == [(15, 0), (30, 0), (15, 1), (30, 1), (45, 1), (30, 2), (45, 2), (30, 3), (45, 3)]
+    assert two.collide(two.cells[1].names)["rotations"] == [0, 1, 2, 3]
+
+
+def test_materials_and_laws():
+    laws = {"strong": {"law": "dmt", "viscous_time_ns": 1.5, "friction": "spring", "surface_energy_mJ_m2": 50}}
+    own = plan(entry(laws=["strong"]), laws=laws)
+    assert own.material_of("strong").surface_energy == pytest.approx(0.05)
+    assert own.material_of("strong").name == "silica_50mJ" and own.material_of("velocity").name == "silica"
+    assert law_from(own.law("strong")).viscous_time == pytest.approx(1.5e-9)
+    assert own.build("silica_50mJ", "570nm")["material"]["surface_energy"] == pytest.approx(0.05)
+
+
+def test_a_giant_among_equal_spheres_takes_its_volume_from_the_others():
+    clusters = {"giant": {"radii": "equal", "radius_nm": 314, "giant_nm": 1800, "second_contact": 0}}
+    own = plan(entry(clusters=["giant"]), clusters=clusters)
+    settings = own.cluster(own.material_of("velocity"), "giant")
+    radii = radii_from(settings, 1)
+    assert radii[0] == pytest.approx(1.8e-6) and len(radii) == 1 + 425
+    assert (radii**3).sum() == pytest.approx(settings["total_cube"], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"runs": [entry(laws=["hard"])]}, r"collision.runs\[0\].laws has 'hard'; allowed: velocity"),
+        ({"runs": [entry(clusters=["100nm"])]}, r"collision.runs\[0\].clusters has '100nm'; allowed: mrn"),
+        ({"runs": [entry(velocities=[0])]}, r"collision.runs\[0\].velocities\[0\] is 0; allowed: a number above 0"),
+        ({"runs": [entry(velocities=[-3])]}, "is -3; allowed"),
+        ({"runs": [entry(impact_parameter=1)]}, "impact_parameter is 1; allowed: a number from 0 to below 1"),
+        ({"runs": [entry(), entry(timestep_ps=10)]}, r"runs\[1\] has 570nm at 15 m/s, .* another timestep_ps"),
+        ({"laws": {"x": {"law": "hertz"}}}, "laws.x.law is 'hertz'; allowed: dmt or jkr"),
+        ({"laws": {"velocity": {"law": "dmt", "damping": "none"}}}, "the key 'damping' in .*laws.velocity is unknown"),
+        ({"laws": {"x": {"law": "dmt", "material": "cheese"}}}, "laws.x.material is 'cheese'; allowed: a-C"),
+        ({"material": "cheese"}, "collision.material is 'cheese'"),
+        ({"clusters": {"new": {"radii": "equal", "second_contact": 0}}}, "clusters.new.radius_nm is missing"),
+        ({"clusters": {"new": {"radii": "equal", "second_contact": 2, "radius_nm": 5}}}, "second_contact is 2"),
+        ({"figures": {"mrn": "none"}}, "figures.mrn is 'none'; allowed: mrn"),
+        (
+            {"snapshots": {"runs": [PICTURE | {"sample": 9}]}},
+            "snapshots.runs has .* allowed: a collision of `runs`",
+        ),
+        ({"extra": 1}, "the key 'extra' in collision is unknown"),
+    ],
+)
+def test_a_wrong_config_is_refused_in_one_sentence(change, words):
+    base = {"runs": [entry()], "snapshots": NO_PICTURES}
+    with pytest.raises(InputError, match=words) as caught:
+        check(copy.deepcopy(config(**base | change)), SCHEMAS)
+    assert "\n" not in str(caught.value) and str(caught.value).startswith("config: ")

@@ -1,0 +1,161 @@
+"""`ratd.collide`: what comes back, what is refused, the same bits after a kill; two spheres and their solution."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ratd
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments import evolve as evolve_module
+from ratd.experiments.collision.laws import balance_of, longest_step, step_of
+from ratd.experiments.collision.run import at_rest, collide
+from ratd.experiments.collision.sticking import breaking_energy_of, parting_velocity, sticking_velocity
+from ratd.experiments.evolve import evolve
+
+SILICA = MATERIALS["silica"]
+SMALL = ratd.build_cluster(np.full(14, 0.3e-6), 1.1e-6, second_contact=0.5, seed=1)
+MIXED = ratd.build_cluster(np.linspace(0.5e-6, 0.2e-6, 10), 1.3e-6, seed=2)
+QUICK = {"duration": 3e-7, "records": 6, "snapshot_every": 3}
+
+
+@pytest.fixture(scope="module")
+def run():
+    return collide(SMALL, SMALL, 4.0, seed=3, **QUICK)
+
+
+def test_what_a_run_holds(run):
+    assert run.sizes["record"] == 7 and run.sizes["snapshot"] == 3 and run.sizes["monomer"] == 28
+    assert run.n_pieces[0] == 2 and run.n_contacts[0] == 2 * SMALL.n_contacts and run.n_contacts[-1] > run.n_contacts[0]
+    mass = SMALL.mass.sum()
+    assert run.attrs["impact_energy"] == pytest.approx(mass * 4.0**2 / 4, rel=1e-12)
+    assert float(run.kinetic_translation[0]) == pytest.approx(run.attrs["impact_energy"], rel=1e-9)
+    assert run.attrs["balance"] <= 0.01 and run.attrs["balance"] == pytest.approx(
+        np.abs(run.residual).max() / run.attrs["impact_energy"]
+    )
+    np.testing.assert_allclose(run.snapshot_time, run.time.values[[0, 3, 6]])
+    assert np.array_equal(run.snapshot_position[-1], run.position) and np.array_equal(run.snapshot_piece[-1], run.piece)
+    found = ratd.fragmentation(run)
+    masses = run.piece_mass.values[-1]
+    assert float(found["X"]) == pytest.approx((masses[0] - masses[1]) / (2 * mass))
+    for name in ("momentum", "angular_momentum"):
+        scale = mass * 4.0 * (1.0 if name == "momentum" else 2e-6)
+        assert np.abs(run[name].values - run[name].values[0]).max() < 1e-11 * scale
+
+
+def test_a_run_goes_on_after_a_kill_with_the_same_bits(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(evolve_module, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(evolve_module, "PROGRESS_INTERVAL", -1.0)
+    told = []
+
+    def kill(time, pieces, energy_left, to_go):
+        told.append((time, pieces, energy_left))
+        if time > 1.4e-7:
+            raise KeyboardInterrupt
+
+    how = QUICK | {"checkpoint": tmp_path / "run.npz"}
+    with pytest.raises(KeyboardInterrupt):
+        collide(SMALL, SMALL, 4.0, seed=3, **how, progress=kill)
+    assert len(told) == 3 and told[0][1] >= 1 and 0.0 < told[-1][2] <= 1.0
+    again = collide(SMALL, SMALL, 4.0, seed=3, **how, progress=lambda *words: told.append(words))
+    assert len(told) == 6
+    xr.testing.assert_identical(again, run)
+
+
+def test_two_different_clusters_and_the_other_law():
+    run = collide(SMALL, MIXED, 2.0, 0.2, seed=1, law="jkr", duration=1e-7, records=2, snapshot_every=0)
+    assert "JKR" in run.attrs["law"] and "snapshot_time" not in run
+    assert run.cluster.values.tolist() == [0] * 14 + [1] * 10
+    masses = SMALL.mass.sum(), MIXED.mass.sum()
+    assert run.attrs["impact_energy"] == pytest.approx(0.5 * masses[0] * masses[1] / sum(masses) * 4.0)
+    assert run.n_contacts[-1] > run.n_contacts[0]
+
+
+def test_built_clusters_are_at_rest_and_others_come_to_rest():
+    apart = np.linalg.norm(SMALL.position[:, None] - SMALL.position[None], axis=2)
+    rested = at_rest(SMALL).position
+    np.testing.assert_allclose(np.linalg.norm(rested[:, None] - rested[None], axis=2), apart, atol=1e-16)
+    # under the other law spheres rest at another overlap
+    other = at_rest(SMALL, "jkr")
+    moved = np.linalg.norm(other.position[:, None] - other.position[None], axis=2) - apart
+    i, j = SMALL.contacts.T
+    assert (moved[i, j] > 0.0).all() and moved[i, j].max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"velocity": 0.0}, "velocity is 0.0; it must be a number above 0"),
+        ({"velocity": -3.0}, "velocity is -3.0"),
+        ({"velocity": np.nan}, "velocity is nan"),
+        ({"law": "hertz"}, "law is 'hertz'; allowed are 'dmt', 'jkr'"),
+        ({"law": 3}, "law is 3; allowed are"),
+        ({"impact_parameter": 1.0}, "impact_parameter is 1.0"),
+        ({"seed": -1}, "seed is -1"),
+        ({"gap": -1e-9}, "gap is -1e-09; .* may not overlap"),
+        ({"timestep": 1e-9}, r"timestep is 1e-09 s; the smallest sphere, 3e-07 m, allows at most \d"),
+        ({"b": "cluster"}, "b is of type str; it must be a ratd.Grain"),
+        ({"b": ratd.build_cluster([1e-7] * 3, 1e-6, "q-S")}, "are of 'silica' and of 'q-S'; they must be of one"),
+        ({"records": 0}, "records is 0"),
+        ({"snapshot_every": -1}, "snapshot_every is -1"),
+        ({"duration": 0.0}, "duration is 0.0"),
+    ],
+)
+def test_bad_input_is_refused_in_one_sentence(arguments, words):
+    with pytest.raises(InputError, match=words) as caught:
+        collide(**{"a": SMALL, "b": SMALL, "velocity": 1.0, "relaxed": True} | QUICK | arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_step_beyond_what_the_damping_allows_ends_with_the_balance():
+    """The limit of `longest_step` is a quarter of the time of the damping; what is worse is caught by the balance."""
+    radius = np.array([50e-9, 1e-6])
+    law = ratd.laws.dmt()
+    assert step_of(radius, SILICA, law) < longest_step(radius, SILICA, law)
+    # about 1 ps, as the paper has for spheres of 50 nm, and less with more damping
+    assert step_of(radius, SILICA, law) == pytest.approx(1e-12, rel=0.35)
+    assert step_of(radius, SILICA, ratd.laws.dmt(viscous_time=1e-9)) == pytest.approx(0.5e-12, rel=0.35)
+    assert balance_of(law) == 0.01 and balance_of(ratd.laws.dmt(friction="spring")) == 0.03
+    slow = ratd.laws.dmt(friction_time=1e-13)
+    assert step_of(radius, SILICA, slow) == pytest.approx(1e-13 / 15)
+
+
+def meet(velocity, a_i=0.3e-6, a_j=0.57e-6, *, aside=0.0, spin=None, law=None, duration=4e-8):
+    """Two spheres that meet, a little apart at the start."""
+    position = np.array([[0.0, 0.0, 0.0], [a_i + a_j + 1e-11, aside, 0.0]])
+    law = ratd.laws.dmt(friction="none") if law is None else law
+    return evolve(
+        position, [a_i, a_j], [[velocity, 0, 0], [0, 0, 0]], spin, "silica", law=law, duration=duration,
+        timestep=2e-13, damping="explicit", records=1, balance=None,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("velocity", [1.5, 3.0, 10.0])
+def test_restitution_of_unequal_spheres(velocity):
+    """Against the equation of motion of the overlap, integrated by an independent method."""
+    run = meet(velocity)
+    parted = run.velocity.values[1, 0] - run.velocity.values[0, 0]
+    assert run.n_contacts[-1] == 0
+    assert parted == pytest.approx(parting_velocity(velocity, 0.3e-6, 0.57e-6, SILICA, 0.5e-9), rel=2e-3)
+
+
+def test_sticking_velocity():
+    """Table of collision.md, Sect. 1, and the engine on both sides of it."""
+    table = {0.396e-6: 0.750, 0.57e-6: 0.356}
+    for radius, wanted in table.items():
+        assert sticking_velocity(radius, radius, SILICA, 0.5e-9) == pytest.approx(wanted, rel=3e-3)
+    assert sticking_velocity(0.05e-6, 0.05e-6, SILICA, 0.5e-9) == np.inf
+    assert sticking_velocity(0.57e-6, 0.57e-6, SILICA, 0.0) == 0.0
+    assert breaking_energy_of(0.57e-6, 0.57e-6, SILICA) == pytest.approx(1.47e-17, rel=5e-3)
+    unequal = sticking_velocity(0.3e-6, 0.57e-6, SILICA, 0.5e-9)
+    assert meet(0.98 * unequal).n_contacts[-1] == 1 and meet(1.02 * unequal).n_contacts[-1] == 0
+
+
+@pytest.mark.parametrize("friction", ["velocity", "spring"])
+def test_momenta_with_unequal_radii_and_spins(friction):
+    spin = [[3e6, -2e6, 1e6], [-1e6, 4e6, 2e6]]
+    run = meet(2.0, aside=0.2e-6, spin=spin, law=ratd.laws.dmt(friction=friction), duration=2e-8)
+    assert run.n_contacts[-1] in (0, 1) and float(run.dissipated[-1].sum()) > 0.0
+    for name in ("momentum", "angular_momentum"):
+        first, last = run[name].values
+        assert np.abs(last - first).max() < 1e-11 * np.abs(first).max()

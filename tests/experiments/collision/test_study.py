@@ -1,0 +1,186 @@
+"""The queue: it goes on where it was and keeps what is there; the tables and figures that follow from it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.collision import study
+from ratd.experiments.collision.figures.dissipation import dissipation
+from ratd.experiments.collision.figures.figure5 import figure5
+from ratd.experiments.collision.figures.figure6 import figure6
+from ratd.experiments.collision.figures.figure7 import figure7, groups_of
+from ratd.experiments.collision.figures.figure8 import figure8
+from ratd.experiments.collision.figures.masses import masses, rows_by_cluster
+from ratd.experiments.collision.figures.page import page
+from ratd.experiments.collision.figures.scaling import scaling
+from ratd.experiments.collision.figures.snapshots import picture, row_of
+from ratd.experiments.collision.plan import Plan
+from ratd.experiments.collision.tables import COLUMNS, THRESHOLDS, cluster_table, collision_table, threshold_table
+from ratd.pipeline import blocks, io
+from ratd.pipeline.kinds import as_dataset
+
+SILICA = MATERIALS["silica"]
+
+
+def plan(folder, **own):
+    """Two clusters of few spheres under one law, two velocities, two rotations, with snapshots of one."""
+    entry = {
+        "laws": ["velocity"],
+        "clusters": ["equal", "unequal"],
+        "samples": 1,
+        "velocities": [2.0, 25.0],
+        "rotations": {"first": 0, "number": 2},
+        "impact_parameter": 0,
+        "timestep_ps": None,
+        "duration_us": 0.6,
+    }
+    one = {"law": "velocity", "cluster": "unequal", "sample": 1, "velocity": 25.0, "rotation": 0}
+    config = {
+        "material": "silica",
+        "cluster_radius_um": 1.6,
+        "filling_factor": 0.2,
+        "clusters": {
+            "equal": {"radii": "equal", "radius_nm": 400, "second_contact": 0.5},
+            "unequal": {"radii": "equal", "radius_nm": 300, "giant_nm": 700, "second_contact": 0.5},
+        },
+        "laws": {"velocity": {"law": "dmt", "viscous_time_ns": 0.5, "friction": "velocity"}},
+        "runs": [entry],
+        "records": 12,
+        "snapshots": {"every": 6, "runs": [one]},
+        "bootstrap": 20,
+        "figures": {"law": "velocity", "mrn": "unequal", "twin": "equal"},
+    }
+    return Plan(config | own, MATERIALS, str(folder / "results"))
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A queue that is stopped in its middle and goes on."""
+    folder = tmp_path_factory.mktemp("study")
+    said = []
+
+    def stop(text):
+        said.append(text)
+        if len(said) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        study.work(plan(folder), folder / "data", say=stop)
+    assert study.work(plan(folder), folder / "data", until=0.0, say=said.append) == 5
+    assert study.work(plan(folder), folder / "data", say=said.append) == 0
+    assert study.work(plan(folder), folder / "data", say=said.append) == 0
+    assert len(said) == 8 and said[0].startswith("velocity equal sample 1 2 m/s rotation 0: X ")
+    return folder
+
+
+def files(done):
+    return sorted((done / "data").rglob("*.nc"))
+
+
+def test_tables_hold_each_collision_once_in_order(done):
+    rows = [(row["cluster"].item(), row["velocity"].item(), row["seed"].item()) for row in all_rows(done)]
+    assert rows == [(name, v, seed) for name in ("equal", "unequal") for v in (2.0, 25.0) for seed in (0, 1)]
+    assert study.state(plan(done), done / "data").splitlines() == [
+        "velocity equal: 4 of 4 collisions",
+        "velocity unequal: 4 of 4 collisions",
+    ]
+    assert len({row["source"].item() for row in all_rows(done)}) == 1
+
+
+def all_rows(done):
+    return [row for path in files(done) for row in blocks.rows(io.read(path, "collisions"), "collisions")]
+
+
+def test_an_undisturbed_queue_gives_the_same_bytes(done, tmp_path):
+    study.work(plan(tmp_path), tmp_path / "data", say=lambda text: None)
+    for path in files(done):
+        assert (tmp_path / path.relative_to(done)).read_bytes() == path.read_bytes()
+
+
+def test_other_settings_under_the_same_name_are_refused(done):
+    with pytest.raises(InputError, match="holds collisions of a law or cluster with other settings"):
+        study.work(plan(done, cluster_radius_um=1.7), done / "data")
+
+
+def test_columns_of_the_tables(done):
+    table = collision_table(files(done))
+    assert list(table) == list(COLUMNS) and len(table) == 8
+    slow, fast = (table[table["velocity"] == v] for v in (2.0, 25.0))
+    assert slow["X"].mean() > 0.8 > 0.3 > fast["X"].mean() and slow["N_s"].mean() < fast["N_s"].mean()
+    spent = table[["by_damping", "by_sliding", "by_rolling", "by_twisting"]].sum(axis=1)
+    # the rest is what is stored in contacts, and what the balance lacks
+    assert (np.abs(1.0 - spent - table["energy_end"]) < 0.05).all() and (table["balance"] < 0.01).all()
+    unequal = table[table["cluster"] == "unequal"]
+    share = 0.343 / (0.343 + 20 * 0.027)
+    assert unequal["largest_share"].to_numpy() == pytest.approx(share, rel=0.1)
+    # whatever breaks, the largest sphere of each cluster stays whole
+    assert (unequal["N_s"] <= 1.0 - unequal["largest_share"] + 1e-12).all()
+    io.write(done / "table.nc", as_dataset(table), "collision_table")
+
+
+def test_threshold_of_the_equal_spheres(done):
+    table = collision_table(files(done))
+    found = threshold_table(table, lambda energy: replace(SILICA, surface_energy=energy), 50)
+    assert list(found) == list(THRESHOLDS) and len(found) == 2
+    equal = found[found["cluster"] == "equal"].iloc[0]
+    assert 2.0 < equal["velocity"] < 25.0 and equal["sticking_velocity"] == pytest.approx(0.735, abs=0.01)
+    mass = 4 / 3 * np.pi * 2000 * 0.4e-6**3
+    assert equal["energy_per_contact"] * 9.16e-18 == pytest.approx(mass * equal["velocity"] ** 2 / 4, rel=0.02)
+    assert np.isnan(found[found["cluster"] == "unequal"].iloc[0]["radius"])
+
+
+@pytest.mark.parametrize("name", ["figure5", "figure6", "figure7", "figure8", "dissipation", "masses", "scaling"])
+def test_figures_draw(done, name):
+    table, paths = collision_table(files(done)), files(done)
+    names = ("velocity", ["equal", "unequal"])
+    figure = {
+        "figure5": lambda: figure5(table, "velocity"),
+        "figure6": lambda: figure6(table, "velocity", "unequal"),
+        "figure7": lambda: figure7(groups_of(paths, *names)),
+        "figure8": lambda: figure8(table, "velocity", "unequal"),
+        "dissipation": lambda: dissipation(table, *names),
+        "masses": lambda: masses(rows_by_cluster(paths, *names)),
+        "scaling": lambda: scaling(threshold_table(table, lambda energy: SILICA, 20).assign(below=9.0, above=10.0)),
+    }[name]()
+    figure.canvas.draw()
+    assert all(axes.has_data() for axes in figure.axes)
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert not any("no collisions" in text for text in words)
+
+
+def test_the_queue_keeps_no_snapshots(done):
+    assert all(row.sizes.get("snapshot", 0) == 0 for row in all_rows(done))
+    with pytest.raises(InputError, match="no collision with snapshots has the rotation 0"):
+        row_of(files(done), 0)
+
+
+def test_pictures_and_page_of_a_collision_with_snapshots(done, tmp_path):
+    own = plan(done)
+    (cell,) = [cell for cell in own.cells if (cell.cluster, cell.velocity) == ("unequal", 25.0)]
+    settings = own.settings_of(cell)
+    assert settings["snapshot_rotations"] == [0]
+    cluster = study.built(own.cluster(SILICA, "unequal"), 1)
+    row = study.collided(cluster, settings, 0, snapshot_every=6)
+    path = tmp_path / "run.nc"
+    io.write(path, blocks.block([row], "collisions", SILICA), "collisions")
+    found = row_of([path], 0)
+    figure = picture(found, 1e-7)
+    assert len(figure.axes) == 7
+    html = page({"runs": [path]}, {"rotation": 0}, None)["page"]
+    assert "unequal, 25 m/s, rotation 0" in html and html == page({"runs": [path]}, {"rotation": 0}, None)["page"]
+
+
+def test_table_1(done, tmp_path):
+    from ratd.experiments.collision.files import cluster_row
+
+    cluster = study.built(plan(done).cluster(SILICA, "equal"), 1)
+    path = tmp_path / "velocity" / "equal.nc"
+    row = cluster_row(cluster, 1.6e-6, "equal")
+    io.write(path, blocks.block([row], "built_clusters", SILICA), "built_clusters")
+    (found,) = cluster_table([path]).to_dict("records")
+    assert found["law"] == "velocity" and found["n_monomers"] == cluster.n_monomers
+    assert found["filling_factor"] == pytest.approx(cluster.n_monomers * 0.4**3 / 1.6**3)
+    assert found["n_contacts"] * cluster.n_monomers == pytest.approx(cluster.n_contacts, abs=1)

@@ -1,0 +1,179 @@
+"""Clusters that are compressed and pulled: balance, work, restart, and what is refused."""
+
+import numpy as np
+import pytest
+
+import ratd
+from ratd.aggregates.strength import rolling_pressure
+from ratd.engine.leapfrog import leapfrog
+from ratd.experiments.compression import strain as strain_module
+from ratd.experiments.compression.run import Cluster
+from ratd.experiments.compression.static import box_rate, static_from, time_unit
+from ratd.experiments.compression.strain import strain_dataset
+
+HOW = {"strain_rate": 3e-5, "until_phi": 0.25}
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    return ratd.grow_bcca(64, seed=0)
+
+
+@pytest.fixture(scope="module")
+def run(cluster):
+    return ratd.compress(cluster, **HOW)
+
+
+def test_records_go_up_to_the_filling_factor_wanted(run, cluster):
+    phi = run["phi"].values
+    assert (np.diff(phi) > 0.0).all() and phi[-1] == pytest.approx(0.25, rel=1e-3)
+    assert np.diff(np.log(phi)).max() < 0.011
+    assert phi == pytest.approx(64 * 4 / 3 * np.pi * 1e-21 / np.prod(run["box_length"].values, axis=1))
+    assert run["snapshot_phi"].values == pytest.approx([0.03, 0.1], rel=0.011) and run.sizes["snapshot"] == 2
+    assert run["snapshot_position"].shape == (2, 64, 3)
+    assert run["n_contacts"].values[-1] > 64 >= run["n_contacts"].values[0] - 2
+
+
+def test_the_work_is_that_of_the_pressure(run):
+    volume = np.prod(run["box_length"].values, axis=1)
+    first = 64 * 4 / 3 * np.pi * 1e-21 / run.attrs["phi_start"]
+    work = -np.cumsum(run["pressure"].values * np.diff(np.append(first, volume)))
+    assert work[-1] == pytest.approx(run["work"].values[-1], rel=2e-3)
+    tensor = run["pressure_tensor"].values
+    assert run["pressure"].values == pytest.approx(tensor[:, :3].mean(axis=1))
+
+
+def test_energy_balances(run):
+    high = run["phi"].values > 0.2
+    assert np.abs(run["energy_residual"] / run["work"]).values[high].max() < 2e-3
+    gone = sum(
+        run[f"dissipated_{way}"].values for way in ("damping", "sliding", "rolling", "twisting", "made", "broken")
+    )
+    held = sum(run[f"stored_{mode}"].values for mode in ("normal", "sliding", "rolling", "twisting"))
+    moving = run["kinetic_translation"].values + run["kinetic_spin"].values
+    # with the first record in place of the start
+    balance = gone + held + moving - run["work"].values
+    assert np.ptp(balance) < 0.01 * run["work"].values[-1]
+
+
+def test_an_unbalanced_run_ends_with_an_error(cluster, monkeypatch):
+    monkeypatch.setattr("ratd.experiments.compression.run.BALANCE", {0.1: 1e-9})
+    with pytest.raises(RuntimeError, match="the balance of energy is off by .* at most 0.0% is allowed"):
+        ratd.compress(cluster, **HOW)
+    assert ratd.compress(cluster, **HOW, balance=False).sizes["record"] > 100
+
+
+def test_a_killed_run_goes_on_with_the_same_bits(cluster, run, tmp_path, monkeypatch):
+    monkeypatch.setattr(strain_module, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(strain_module, "PROGRESS_INTERVAL", 0.0)
+    seen = []
+
+    def stop(phi, pressure, seconds_to_go):
+        seen.append(phi)
+        if phi > 0.08:
+            raise KeyboardInterrupt
+
+    path = tmp_path / "checkpoint"
+    with pytest.raises(KeyboardInterrupt):
+        ratd.compress(cluster, **HOW, checkpoint=path, progress=stop)
+    went_on = []
+    again = ratd.compress(cluster, **HOW, checkpoint=path, progress=lambda phi, *_: went_on.append(phi))
+    assert went_on[0] > 0.079 and seen[0] < 0.02
+    assert again.equals(run)
+
+
+def test_the_integrator_goes_to_the_engine(cluster):
+    own = leapfrog(timestep=2e-11)
+    run = ratd.compress(cluster, **HOW | {"until_phi": 0.05}, integrator=own)
+    assert run.attrs["timestep"] == 2e-11 and "timestep=2e-11" in run.attrs["integrator"]
+
+
+def test_own_aggregates_of_unequal_monomers_are_compressed():
+    grain = ratd.grow("BA", a_eff=150e-9, material="q-S", seed=1)
+    material = ratd.Material("own", 0.05, 1e10, 0.2, 2000.0, 1e-9)
+    run = ratd.compress(grain, 1e-4, 0.3, material=material)
+    assert run.attrs["material"] == "own" and run.attrs["surface_energy"] == 0.05
+    mean = np.mean(grain.radius**3) ** (1 / 3)
+    assert run.attrs["rolling_pressure"] == pytest.approx(rolling_pressure(0.05, 1e-9, mean))
+    assert run.attrs["time_unit"] == pytest.approx(time_unit(material, mean))
+    assert run["pressure"].values[-1] > 0.0
+
+
+def test_static_is_what_the_specification_says():
+    ice, silicate = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
+    for material, radius, expected in ((ice, 1e-7, (2.6e-3, 3.7e-3, 5.3e-3)), (silicate, 6e-7, (0.014, 0.020, 0.028))):
+        rate = box_rate(3e-7, time_unit(material, radius))
+        P_0 = rolling_pressure(material.surface_energy, material.critical_rolling_displacement, radius)
+        found = [static_from(rate, n, radius, material.density, P_0) for n in (1024, 4096, 16384)]
+        assert found == pytest.approx(expected, rel=0.03)
+        faster = static_from(10 * rate, 1024, radius, material.density, P_0)
+        assert faster / found[0] == pytest.approx(10**0.75)
+
+
+def test_a_compression_that_is_too_fast_is_warned_of(cluster):
+    with pytest.warns(UserWarning, match="inertia dominates: the compression is static from phi = 0.[0-9]+ on"):
+        ratd.compress(cluster, 1e-3, 0.03)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"strain_rate": 0}, "strain_rate is 0; it must be a number above 0"),
+        ({"strain_rate": float("nan")}, "strain_rate is nan; it must be a number above 0"),
+        ({"until_phi": 0.9}, "until_phi is 0.9; it must be above .* and at most 0.64"),
+        ({"until_phi": 1e-4}, "until_phi is 0.0001; it must be above"),
+        ({"box_length": 1e-7}, "box_length is 1e-07 m; it must be at least 2e-07 m, a monomer"),
+        ({"box_length": 5e-7}, "box_length is 5e-07 m; it must be at least .* the greatest extent of the cluster"),
+        ({"scheme": "other"}, "scheme is 'other'; allowed are homogeneous, as_printed"),
+        ({"material": "x"}, "x"),
+    ],
+)
+def test_bad_input_is_one_sentence(cluster, arguments, said):
+    with pytest.raises(ratd.InputError, match=said):
+        ratd.compress(cluster, **arguments)
+
+
+def test_what_is_no_aggregate_in_one_piece_is_refused(cluster):
+    with pytest.raises(ratd.InputError, match="the cluster is of type list; it must be a ratd.Grain"):
+        ratd.compress([cluster])
+    two = np.vstack([cluster.position, cluster.position + [1e-5, 0, 0]])
+    with pytest.raises(ratd.InputError, match="piece"):
+        ratd.Grain(two, np.tile(cluster.radius, 2), "ice")
+    with pytest.raises(ratd.InputError, match="overlap"):
+        ratd.Grain([[0, 0, 0], [1e-7, 0, 0]], [1e-7, 1e-7], "ice")
+
+
+def test_a_pulled_cluster_comes_apart(run):
+    pulled = ratd.stretch(run, 3e-5)
+    tension = pulled["tension"].values
+    assert pulled.attrs["tensile_strength"] == pytest.approx(np.convolve(tension, np.full(4, 0.25), "valid").max())
+    assert 0.0 < pulled.attrs["tensile_strength"] < 0.1 / 1e-7
+    assert tension == pytest.approx(-pulled["pressure_tensor"].values[:, 0])
+    edges = pulled["box_length"].values
+    assert (np.diff(edges[:, 0]) > 0.0).all() and (edges[:, 1:] == run["box_length"].values[-1, 1:]).all()
+    assert pulled.attrs["phi_strength"] < pulled.attrs["phi_start"] == run["phi"].values[-1]
+    # the tension falls once the cluster parts
+    assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"axes": "y"}, "axes is 'y'; allowed are x, xyz"),
+        ({"strain_rate": -1}, "strain_rate is -1; it must be a number above 0"),
+    ],
+)
+def test_bad_input_of_a_pull_is_one_sentence(run, arguments, said):
+    with pytest.raises(ratd.InputError, match=said):
+        ratd.stretch(run, **arguments)
+    with pytest.raises(ratd.InputError, match="compressed must be what ratd.compress returned"):
+        ratd.stretch(run[["phi"]])
+
+
+def test_the_state_of_a_run_can_be_taken_up(run):
+    from ratd.experiments.compression.strain import Parts, state_of
+
+    state = state_of(run)
+    again = strain_dataset(state, np.zeros((1, 60)), Parts(None, None, None))
+    assert (again["position"].values == run["position"].values).all()
+    assert Cluster(ratd.grow_bcca(64, seed=0)).volume == pytest.approx(64 * 4 / 3 * np.pi * 1e-21)

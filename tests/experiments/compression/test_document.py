@@ -1,0 +1,68 @@
+"""docs/compression.md: what is committed is what its data give, and a sentence that no longer holds is an error."""
+
+from pathlib import Path
+
+import pytest
+
+import ratd
+from ratd.experiments.compression import document
+from ratd.experiments.compression.findings import findings
+from ratd.pipeline.documents import Measured, fill, slots
+
+TEMPLATE = document.TEMPLATE.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def values():
+    return findings(*document.read_data())
+
+
+def test_the_committed_document_is_what_its_data_give(values):
+    assert fill(TEMPLATE, values) == document.DOCUMENT.read_text(encoding="utf-8")
+
+
+def test_every_figure_of_the_document_is_there():
+    text = document.DOCUMENT.read_text(encoding="utf-8")
+    shown = [line.split("(compression/")[1].rstrip(")") for line in text.splitlines() if line.startswith("![")]
+    assert len(shown) >= 12
+    assert [name for name in shown if not (document.FIGURES / name).is_file()] == []
+
+
+def test_a_sentence_that_no_longer_holds_is_an_error(values):
+    verdicts = [name for name in slots(TEMPLATE) if isinstance(values.get(name), str)]
+    assert {"exponent", "line_0.1", "silicate_300", "leader_0.48"} <= set(verdicts)
+    for name in verdicts:
+        with pytest.raises(ratd.InputError, match=f"the verdict {name} is 'other'"):
+            fill(TEMPLATE, values | {name: "other"})
+
+
+def test_a_number_that_changes_flips_the_verdict_on_it(values):
+    sets, *_ = document.read_data()
+    assert values["line_0.05"] == "below" and values["exponent"] == "agrees"
+    fiducial = sets["fiducial"].copy(deep=True)
+    fiducial["pressure"] = fiducial["pressure"] * 1.5
+    changed = findings({"fiducial": fiducial}, None, None)
+    assert changed["line_0.05"] == "on"
+    fiducial["pressure"] = fiducial["pressure"] * fiducial["phi"]
+    assert findings({"fiducial": fiducial}, None, None)["exponent"] == "differs"
+
+
+def test_missing_data_are_one_sentence(tmp_path):
+    with pytest.raises(ratd.FileError, match="holds no fiducial.nc"):
+        document.read_data(tmp_path)
+    with pytest.raises(ratd.FileError, match="holds no tables of the compression"):
+        document.collect(tmp_path)
+
+
+def test_the_command_says_how_it_is_used(capsys):
+    assert document.main([]) == 2 and "redraw" in capsys.readouterr().out
+    assert document.main(["collect", "nowhere"]) == 1 and "nowhere" in capsys.readouterr().err
+
+
+def test_parts_without_data_are_left_out():
+    text = "a\n<!-- if x -->\nb {{x.n}}\n<!-- if not y -->\nc\n<!-- end -->\n<!-- end -->\nd\n"
+    assert fill(text, {"x.n": 2}) == "a\nb 2\nc\nd\n"
+    assert fill(text, {"y.n": 2.0}) == "a\nd\n"
+    with pytest.raises(ratd.InputError, match="an 'if' without an 'end'"):
+        fill("<!-- if x -->\n", {"x.n": Measured(1.0)})
+    assert Path("docs/compression/data/sets/fiducial.nc").is_file()

@@ -1,0 +1,73 @@
+"""The configs of the compression: what they plan and what they refuse."""
+
+import pytest
+
+import ratd
+from ratd.engine.leapfrog import Leapfrog
+from ratd.engine.semi_implicit import SemiImplicit
+from ratd.experiments.compression import plan as plans
+from ratd.experiments.compression.squeeze import integrator_of
+from ratd.pipeline.config import load, merge
+
+PAPER = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml")
+
+
+def plan_of(*over, **compression):
+    return plans.check(merge(load(*PAPER, *over), {"compression": compression}))
+
+
+@pytest.mark.parametrize("name", ["compression_quick", "compression_default"])
+def test_configs_that_come_with_ratd_are_good(name):
+    plan = plan_of(f"config/{name}.yaml")
+    assert plan.results == f"results/{name}"
+    for wanted in plan.sets:
+        assert plan.grow(wanted)["n"] <= 16384 and plan.compress(wanted)["strain_rate"] >= 3e-7
+        assert len(plan.files(plans.RUN, wanted)) == len(plan.seeds(wanted)) >= 2
+
+
+def test_the_paper_is_as_printed():
+    plan = plan_of()
+    assert set(plan.figures) == set(plans.FIGURES)
+    assert plan.of_set("fiducial")["strain_rate"] == 3e-7 and plan.seeds("fiducial") == list(range(10))
+    assert plan.compress("k_n_10")["k_n"] == 10
+    assert plan.grow("xi_2")["material"]["critical_rolling_displacement"] == pytest.approx(2e-10)
+    mrn = {"law": "mrn", "smallest": pytest.approx(5e-8), "largest": pytest.approx(4e-7)}
+    assert plan.grow("mrn")["radii"] == mrn
+    assert plan.stretch("x")["pull"] == {"strain_rate": 3e-7, "axes": "x"}
+
+
+def test_only_the_sets_that_a_figure_names_are_wanted():
+    figures = dict.fromkeys(plans.FIGURES) | {"figure5": {"sets": ["rate_1e-5", "fiducial"]}}
+    plan = plan_of(figures=figures)
+    assert plan.sets == ["rate_1e-5", "fiducial"] and plan.figures == ["figure5"]
+    assert plan.tables == ["<results>/compression/rate_1e-5.nc", "<results>/compression/fiducial.nc"]
+    # clusters that are pulled need no compression of their own
+    figures = dict.fromkeys(plans.FIGURES) | {"tension": {"pulls": ["x"]}}
+    assert all("/tension/" in path for path in plan_of(figures=figures).tables)
+
+
+def test_the_integrator_is_chosen_in_one_place():
+    step = {"longest_t0": 3, "displacement_nm": 0.2, "travel_nm": 2, "calming": 0.1}
+    settings = plan_of(all_sets={"semi_implicit": step}).compress("fiducial")
+    chosen = integrator_of(settings, 2e-10)
+    assert isinstance(chosen, SemiImplicit) and chosen.longest == pytest.approx(6e-10) and chosen.calming == 0.1
+    explicit = integrator_of(plan_of().compress("fiducial"), 2e-10)
+    assert isinstance(explicit, Leapfrog) and explicit.timestep_factor == 0.0708
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"figures": {"figure4": {"set": "x"}}}, "config: compression.figures.figure4 names the set 'x'; allowed: fid"),
+        ({"all_sets": {"n": 1000}}, "config: compression.all_sets.n is 1000; allowed: a power of 2 from 2"),
+        ({"all_sets": {"strain_rate": 0}}, "compression.all_sets.strain_rate is 0; allowed: a number above 0"),
+        ({"sets": {"fiducial": {"material": "x"}}}, "compression.sets.fiducial.material is 'x'; allowed: a-C"),
+        ({"sets": {"fiducial": {"material": "q-S"}}}, "compression.sets.fiducial.radius_nm is null; allowed: a number"),
+        ({"sets": {"fiducial": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),
+        ({"sets": {"fiducial": {"speed": 1}}}, "the key 'speed' in compression.sets.fiducial is unknown"),
+    ],
+)
+def test_a_wrong_config_is_one_sentence(change, said):
+    with pytest.raises(ratd.InputError) as error:
+        plan_of(**change)
+    assert said in str(error.value)

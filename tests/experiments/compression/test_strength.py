@@ -1,0 +1,101 @@
+"""Fits of the compressive strength to data that are known."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ratd
+from ratd.experiments.compression import strength
+from ratd.experiments.compression.monomers import derived_pressure
+from ratd.experiments.compression.tables import BIN, bins, in_bins
+
+P_0 = 5e5
+
+
+def table_of(law, seeds=5, scatter=0.0, last=0.5):
+    """A table with pressures after a law of phi, each seed off by a factor of its own."""
+    phi = BIN ** (np.arange(bins(0.004), bins(last)) + 0.5)
+    factor = np.exp(scatter * np.random.default_rng(0).normal(size=seeds))
+    table = xr.Dataset({"phi": ("phi_bin", phi)})
+    table["pressure"] = (("seed_number", "phi_bin"), factor[:, None] * law(phi))
+    table["rolling_pressure"] = ("seed_number", np.full(seeds, P_0))
+    return table
+
+
+def test_the_power_law_is_found_with_its_error():
+    fit = strength.fit_power_law(table_of(lambda phi: 0.8 * P_0 * phi**3.2 * 0.1**-0.2))
+    assert fit.value[:2] == pytest.approx([3.2, 0.8]) and fit.error == pytest.approx([0, 0, 0], abs=1e-12)
+    scattered = strength.fit_power_law(table_of(lambda phi: P_0 * phi**3, seeds=400, scatter=0.2))
+    assert scattered.value[0] == pytest.approx(3.0)
+    assert scattered.value[2] == pytest.approx(np.exp(0.02), rel=0.03)
+    # of a lognormal factor: sigma e^(sigma^2/2)/sqrt(n), nearly
+    assert scattered.error[2] == pytest.approx(0.2 / 20, rel=0.15)
+
+
+def test_a_single_seed_has_no_error():
+    fit = strength.fit_power_law(table_of(lambda phi: P_0 * phi**3, seeds=1))
+    assert np.isnan(fit.error).all() and fit.n == 1
+
+
+def test_the_greatest_filling_factor_is_found():
+    fit = strength.fit_with_limit(table_of(lambda phi: 0.6 * P_0 * (1 / phi - 1 / 0.7) ** -3))
+    assert fit.value == pytest.approx([0.6, 0.7])
+
+
+def test_the_filling_factor_at_a_pressure_is_found():
+    table = table_of(lambda phi: P_0 * phi**3)
+    assert strength.phi_at(table, P_0 * 0.2**3).value == pytest.approx([0.2])
+    assert strength.ratio_at(table, 0.1).value == pytest.approx([1.0])
+    assert strength.scatter_at(table_of(lambda phi: P_0 * phi**3, 500, 0.1), 0.1) == pytest.approx(0.1, rel=0.15)
+
+
+def test_runs_that_begin_later_count_as_nothing_or_not_at_all():
+    table = table_of(lambda phi: P_0 * phi**3, seeds=2)
+    table["pressure"].values[0, :10] = np.nan
+    mean, error = strength.mean_pressure(table)
+    assert np.isnan(mean[:10]).all() and np.isfinite(mean[10:]).all()
+    alone, _ = strength.mean_pressure(table, alone=True)
+    assert alone[:10] == pytest.approx(0.5 * table["pressure"].values[1, :10])
+    assert error[10:] == pytest.approx(np.zeros(len(error) - 10))
+
+
+def test_who_overtakes_whom():
+    table = table_of(lambda phi: P_0 * phi**3)
+    phi = table["phi"].values
+    for way, energy in (("sliding", phi**6), ("rolling", phi**3 * 0.5 * 0.2**3)):
+        table[f"dissipated_{way}"] = (("seed_number", "phi_bin"), np.tile(energy, (5, 1)))
+    # 6 phi^6 = 1.5 phi^3 0.2^3
+    assert strength.overtakes(table, "sliding", "rolling") == pytest.approx(0.2 * 0.25 ** (1 / 3), rel=0.2)
+    assert np.isnan(strength.overtakes(table, "rolling", "sliding"))
+
+
+def test_a_range_without_data_is_one_sentence():
+    with pytest.raises(ratd.InputError, match="no run covers the filling factors from 0.1 to 0.5"):
+        strength.fit_with_limit(table_of(lambda phi: phi, last=0.2))
+
+
+def test_means_over_bins_are_those_of_the_records():
+    phi = 0.01 * 1.01 ** np.arange(400)
+    run = xr.Dataset({"phi": ("record", phi * 1.005), "phi_mean": ("record", phi), "pressure": ("record", phi**3)})
+    run["pressure_tensor"] = (("record", "component"), np.tile(phi[:, None], (1, 6)))
+    for name in ("n_contacts", "work", "energy_residual", "stored_normal", "dissipated_rolling"):
+        run[name] = ("record", phi)
+    first, last = bins(0.01), bins(0.5)
+    binned = in_bins(run, first, last)
+    for k, number in enumerate(range(first, last + 1)):
+        inside = (phi >= BIN**number) & (phi < BIN ** (number + 1))
+        assert binned["pressure"][k] == pytest.approx(np.mean(phi[inside] ** 3))
+        assert binned["work"][k] == pytest.approx(BIN ** (number + 0.5), rel=0.011)
+
+
+def test_compressive_strength_of_runs():
+    runs = [ratd.compress(ratd.grow_bcca(64, seed=seed), 3e-5, 0.25) for seed in (0, 1)]
+    found = ratd.compressive_strength(runs)
+    assert found["n"] == 2 and 0.1 < found["ratio"] < 10.0 and found["ratio_error"] > 0.0
+    alone = ratd.compressive_strength(runs[0], 0.05, 0.2)
+    assert alone["n"] == 1 and np.isnan(alone["exponent_error"])
+
+
+def test_equal_monomers_are_a_case_of_unequal_ones():
+    E_roll, r_0 = 4.7e-16, 1e-7
+    assert derived_pressure(E_roll, r_0, r_0**3) == pytest.approx(E_roll / r_0**3)

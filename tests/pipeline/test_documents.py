@@ -1,0 +1,27 @@
+"""Templates of documents: slots, errors, verdicts."""
+
+import math
+
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.pipeline.documents import Measured, fill, slots
+
+
+def test_slots_are_filled():
+    values = {"a": 0.12345, "b": Measured(1.5, 0.25), "c": "ice", "d": 3e-6, "e": Measured(2.0), "n": 7}
+    text = "{{a:.2f}} {{ b:.2f± }} {{b:.1f}} {{c}} {{d:.1e}} {{e:.0f±}} {{n}} {{a:.0%}}"
+    assert fill(text, values) == "0.12 1.50 ± 0.25 1.5 ice 3.0·10⁻⁶ 2 7 12%"
+    assert slots(text) == ["a", "b", "b", "c", "d", "e", "n", "a"]
+
+
+def test_a_verdict_that_flips_is_an_error():
+    assert fill("It {{line=holds}}.", {"line": "holds"}) == "It holds."
+    with pytest.raises(InputError, match="the verdict line is 'fails', but the template says 'holds'"):
+        fill("It {{line=holds}}.", {"line": "fails"})
+
+
+@pytest.mark.parametrize(("value", "said"), [({}, "has no value"), ({"a": math.nan}, "is nan, no finite number")])
+def test_what_cannot_be_filled_is_one_sentence(value, said):
+    with pytest.raises(InputError, match=said):
+        fill("{{a:.2f}}", value)

@@ -1,0 +1,62 @@
+"""The compression beside LAMMPS, on a cluster so small that both take a second."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.experiments.compression.findings import of_lammps
+from ratd.pipeline import io
+from ratd.validation import compression, peer_lammps
+from ratd.validation.tables import as_dataset
+
+SMALL = {
+    "material": "ice", "n": 64, "seed": 1, "strain_rate": 5e-5, "until_phi": 0.2, "timestep_factor": 0.14,
+    "lammps_step": 0.1,
+}  # fmt: skip
+
+
+def installed():
+    try:
+        peer_lammps.load()
+    except InputError:
+        return False
+    return True
+
+
+@pytest.fixture(scope="module")
+def rows():
+    if not installed():
+        pytest.skip("LAMMPS is not installed")
+    said = []
+    found = compression.compute(SMALL, said.append)
+    assert said[0] == "ratd: done" and "LAMMPS: phi = 0.2" in said[-1].replace("0.19", "0.2")
+    return found
+
+
+def test_both_codes_begin_with_the_same_pressure_and_contacts(rows):
+    ours, theirs = ([row for row in rows if row["code"] == code] for code in ("ratd", "LAMMPS"))
+    assert [row["phi"] for row in ours] == pytest.approx([row["phi"] for row in theirs])
+    assert ours[0]["n_contacts"] == theirs[0]["n_contacts"] == 63
+    # at first the box carries a tree along that bends as little in one as in the other
+    assert theirs[0]["pressure"] == pytest.approx(ours[0]["pressure"], rel=0.3)
+    last = [np.mean([row["n_contacts"] for row in each[-4:]]) for each in (ours, theirs)]
+    assert last[1] == pytest.approx(last[0], rel=0.1)
+
+
+def test_rows_make_a_file_of_the_check(rows, tmp_path):
+    io.write(tmp_path / "a.nc", as_dataset(rows, compression.KIND), compression.KIND)
+    assert io.read(tmp_path / "a.nc", compression.KIND).sizes["case"] == len(rows)
+
+
+def test_ratios_are_means_over_seeds():
+    codes = ((0, "ratd", 2, 50), (0, "LAMMPS", 1, 55), (1, "ratd", 1, 40), (1, "LAMMPS", 1, 40))
+    cases = [
+        dict(seed=seed, code=code, phi=phi, pressure=factor * phi**3, line=phi**3, n_contacts=count, n_monomers=64)
+        for seed, code, factor, count in codes
+        for phi in (0.05, 0.1, 0.2, 0.3)
+    ]
+    found = of_lammps(pd.DataFrame(cases))
+    assert found["lammps.pressure_low"] == pytest.approx((0.75, 0.25))
+    assert found["lammps.n_contacts_high"] == pytest.approx((1.05, 0.05))
+    assert found["lammps.n"] == 2 and found["lammps.N"] == 64
