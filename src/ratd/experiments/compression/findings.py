@@ -47,7 +47,8 @@ def of_set(name, table):
     root = math.sqrt(gyration)
     r_0 = table["monomer_radius"].item()
     found["gyration"] = Measured(root / r_0, 0.5 * error / root / r_0)
-    for phi in AT:
+    last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
+    for phi in [phi for phi in AT if phi < last]:
         found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
         found[f"scatter_{phi:g}"] = scatter_at(table, phi)
         k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
@@ -59,7 +60,7 @@ def of_set(name, table):
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
     exponent, at, ratio = _several(fit_power_law(table))
     found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
-    found["limit_c"], found["limit_phi"] = _several(fit_with_limit(table))
+    found["limit_c"], found["limit_phi"] = _several(fit_with_limit(table, high=min(0.5, last)))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
     part = np.abs(table["energy_residual"].values / table["work"].values)
@@ -74,7 +75,7 @@ def of_set(name, table):
         found[f"fitted_{phi:g}"] = float(
             found["limit_c"].value * compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value) / phi**3
         )
-    found["phi_300"] = _measured(phi_at(table, 300.0))
+    found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
     found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
     found["tatsuuma_300"] = _solved(300.0, found["P0"])
     return {f"{name}.{key}": value for key, value in found.items()}

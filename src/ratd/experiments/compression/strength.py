@@ -153,9 +153,9 @@ def mean_pressure(table, *, alone=False):
     return pressure.mean(axis=0), error
 
 
-def phi_at(table, pressure):
-    """Filling factor at which the mean pressure reaches a value [Pa], `Fit` of one number."""
-    phi, all_pressures = _within(table, 0.05, 0.45)
+def phi_at(table, pressure, high=0.45):
+    """Filling factor between 0.05 and `high` at which the mean pressure reaches a value [Pa], `Fit` of one number."""
+    phi, all_pressures = _within(table, 0.05, high)
 
     def fit(mean):
         rising = np.maximum.accumulate(np.maximum(mean, 1e-300))
