@@ -209,7 +209,7 @@ def _plan(arguments):
             "materials": ["q-S"],
             "sizes_nm": [50],
             "seeds": {"first": 0, "number": 2},
-            "run": {"epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
+            "run": {"stretch": None, "epsilon": 0.5, "timestep_factor": 0.05, "records": 30},
             "literal": {"angular_acceleration": 1e17},
             "snapshots": {"grains": []},
             "figures": dict.fromkeys(settings["spin_up"]["figures"]),

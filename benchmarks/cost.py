@@ -12,6 +12,9 @@ Under Eq. 24 a grain of the drive literal breaks at an omega that depends on d o
 little. There a run of `SHORT` steps tells how long a step takes, and theory how many there are: up to the omega at
 which a solid grain parts (`ratd.experiments.spin_up.solid.solid_omega`).
 
+A spin-up that waits until the grain is quiet takes steps that no faster run foretells. There one grain of each cell is
+run in full.
+
 Cells whose full run is cheap are run in full as well; the ratios of both, full to projected, tell the error and correct
 the cells that are not run in full.
 
@@ -30,7 +33,7 @@ from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import FIRST_LOSS
+from ratd.experiments.spin_up.how import FIRST_LOSS
 from ratd.experiments.spin_up.same_grains import first_step
 from ratd.experiments.spin_up.solid import solid_omega
 
@@ -39,6 +42,8 @@ FASTER = 3
 SHORT = 20_000
 """Steps of a run that tells how long a step takes."""
 
+PACES = ("stretch", "epsilon", "angular_acceleration")
+"""Keys of the config one of which says how slowly a grain is spun up."""
 KEY = ("drive", "material", "type", "size_nm", "coarse", "pace", "timestep_factor", "records")
 """Columns that say what was run. Rows of another machine or another source are dropped at the start."""
 
@@ -78,9 +83,10 @@ def measure(out, plan, *, drives, coarse, full_below, seeds, minutes, about, say
     ]
     _compile(plan, drives)
     for drive in drives:
-        for level in (*_levels(plan, drive, coarse[drive]), 1):
+        levels = _levels(plan, drive, coarse[drive])
+        for level in dict.fromkeys((*levels, 1)):
             for cell in plan.cells:
-                if level == 1 and not _cheap(rows, plan, drive, cell, coarse[drive], full_below):
+                if level not in levels and not _cheap(rows, plan, drive, cell, coarse[drive], full_below):
                     continue
                 if _find(rows, plan, drive, cell, level):
                     continue
@@ -106,8 +112,15 @@ def _by_epsilon(plan, drive):
     return plan.spin_up_of(drive)["epsilon"] is not None
 
 
+def _waits(plan, drive):
+    """Whether a drive waits until the grain is quiet."""
+    return plan.spin_up_of(drive)["stretch"] is not None
+
+
 def _levels(plan, drive, coarse):
-    """Runs from which a full one is projected: how many times faster they are, or "short"."""
+    """Runs from which a full one is projected: how many times faster they are (1 for itself), or "short"."""
+    if _waits(plan, drive):
+        return (1,)
     return (FASTER * coarse, coarse) if _by_epsilon(plan, drive) else ("short",)
 
 
@@ -121,7 +134,7 @@ def _settings(plan, drive, cell, coarse):
         "size_nm": size,
         "coarse": coarse,
         # the config's own, not multiplied
-        "pace": f"{spin['angular_acceleration'] if spin['epsilon'] is None else spin['epsilon']:g}",
+        "pace": f"{next(spin[name] for name in PACES if spin[name] is not None):g}",
         "timestep_factor": f"{spin['timestep_factor']:g}",
         "records": spin["records"],
         "source": machine.source(),
@@ -144,8 +157,7 @@ def arguments_of(plan, drive, kind, coarse):
     `coarse` may be "short" for a run of `SHORT` steps.
     """
     spin = plan.spin_up_of(drive, kind)
-    names = ("epsilon", "angular_acceleration", "timestep_factor", "records", "max_steps")
-    arguments = {"drive": drive} | {name: spin[name] for name in names}
+    arguments = {"drive": drive} | {name: spin[name] for name in (*PACES, "timestep_factor", "records", "max_steps")}
     if coarse == "short":
         return arguments | {"max_steps": SHORT}
     for name in ("epsilon", "angular_acceleration"):
@@ -215,10 +227,13 @@ def _cheap(rows, plan, drive, cell, coarse, full_below):
 
 def projected(rows, plan, drive, cell, coarse):
     """Seconds and steps of the full run of a cell after its others; None where one of them is missing."""
-    found = [_find(rows, plan, drive, cell, level) for level in _levels(plan, drive, coarse)]
+    levels = _levels(plan, drive, coarse)
+    found = [_find(rows, plan, drive, cell, level) for level in levels]
     if not all(found) or found[-1]["end"].startswith("failed"):
         return None
-    if len(found) == 1:
+    if levels == (1,):
+        return float(found[0]["seconds"]), float(found[0]["steps"])
+    if levels == ("short",):
         steps = float(found[0]["expected_steps"])
         return float(found[0]["us_per_step"]) * 1e-6 * steps, steps
     faster, fast = found
@@ -236,8 +251,10 @@ def expected_steps(plan, drive, grain):
 
     Under the constant-epsilon law that is at the cut bound omega_c, about 1/(epsilon omega_c dt) steps; what comes
     after takes as many again, or fewer. With the drive literal it is where a solid grain parts that holds to where the
-    first monomers leave.
+    first monomers leave. Nothing is expected of a spin-up that waits: 1 for every grain.
     """
+    if _waits(plan, drive):
+        return 1.0
     spin = plan.spin_up_of(drive, grain.type)
     dt, omega = first_step(grain, spin["timestep_factor"]), cut_bound(grain)
     if spin["epsilon"] is not None:

@@ -12,7 +12,7 @@ from ratd.engine.state import State, new_state
 from ratd.engine.step import STEPS_DONE, run, until
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.run import TIMESTEP_FACTOR
+from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.geometry.box import Open, Periodic, open_space, periodic
 from ratd.laws import dmt, jkr
 

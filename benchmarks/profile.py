@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
-from ratd.experiments.spin_up.run import FIRST_LOSS
+from ratd.experiments.spin_up.how import FIRST_LOSS
 
 DRIVE = "prescribed"
 EDGES = (0.0, FIRST_LOSS, 1.0, 2.0, np.inf)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from benchmarks.cost import FASTER, SHORT
+from benchmarks.cost import SHORT
 from benchmarks.figures import draw_cost, draw_kernel, draw_scaling
 from benchmarks.goals import goals
 from benchmarks.scaling import LINEAR_FROM, exponent
@@ -151,46 +151,50 @@ def _codes(data):
     return table(head, rows)
 
 
+COST_HEAD = [
+    "drive", "spin-up", "grains", "cells missing", "core-hours", "range", "error of the seeds", "uncorrected",
+    "run in full", "cells compared", "full over projected", "its scatter", "steps likewise",
+]  # fmt: skip
+COST_NOTE = f"""
+A drive that waits until the grain is quiet is measured: one grain a cell is run as the config says. The others are
+projected. One grain a cell is run faster than the config says, and what of its time grows with the steps is multiplied
+up. The drive `literal` is run for {SHORT} steps, and theory says how many there are.
+
+Cells that are cheap are run in full as well. *Full over projected* compares them with what was projected: the
+geometric mean, the scatter from cell to cell as a factor, and the numbers of steps. This mean corrects the cells that
+were not run in full. They are larger, and may differ from it by as much as the scatter. The *range* is for all of them
+being off by the scatter together. *Cells missing* are those whose runs failed.
+"""
+
+
 def _cost(out):
     cells, totals, runs = frame(out, "cost_cells"), frame(out, "cost_paper"), frame(out, "cost_runs")
     if runs is None:
         return ""
     if cells is None or totals is None:
         return "## Cost of the paper\n\nNot finished: the same command goes on.\n"
-    words = ["## Cost of the paper\n", _where(totals)]
+    rows = []
     for row in totals.itertuples():
-        compared = (
-            f"In the {row.cells_compared} cells that were also run in full, the full run took "
-            f"{row.full_to_projected_mean:.2f} times what the fast one projects (geometric mean; scatter from cell to "
-            f"cell a factor of {row.full_to_projected_scatter:.2f}, from {row.full_to_projected_min:.2f} to "
-            f"{row.full_to_projected_max:.2f}; number of steps, all of them together: {row.full_steps_to_projected:.2f}"
-            "). The cells that were not run in full are corrected by this mean. The correction comes from cells that "
-            "are cheap, i.e. small, and the expensive ones may differ from them by as much as these differ from each "
-            "other."
-            if row.cells_compared > 1
-            else "Not enough cells were run in full to tell how good the projection is."
-        )
         low, high = projected_range(row)
-        span = (
-            ""
-            if low is None
-            else f" ({low:.1f} to {high:.1f} if all cells not run in full were off by that scatter together)"
+        compared = row.cells_compared > 1
+        rows.append(
+            [
+                row.drive,
+                f"{row.pace}, f = {row.timestep_factor:g}",
+                row.grains,
+                row.cells_missing,
+                f"{row.core_hours:.1f}",
+                "-" if low is None else f"{low:.1f} to {high:.1f}",
+                f"{row.error_of_seeds:.1f}",
+                f"{row.core_hours_uncorrected:.1f}",
+                f"{100 * row.part_run_in_full:.0f} %",
+                row.cells_compared,
+                f"{row.full_to_projected_mean:.2f}" if compared else "-",
+                f"{row.full_to_projected_scatter:.2f}" if compared else "-",
+                f"{row.full_steps_to_projected:.2f}" if compared else "-",
+            ]
         )
-        missing = f"**{row.cells_missing} cells are missing: their runs failed.** " if row.cells_missing else ""
-        seeds = f"The standard error of the seeds is {row.error_of_seeds:.1f} core-hours. "
-        how = (
-            f"One grain a cell was run for {SHORT} steps, which tells how long a step takes; the number of steps is "
-            "that to the omega at which a solid grain parts. "
-            if row.coarse == "short"
-            else f"One grain a cell was run {row.coarse} and {FASTER * int(row.coarse)} times as fast as the config "
-            "says; what of its time grows with the steps was multiplied up, the rest was not. "
-        )
-        words.append(
-            f"**Drive `{row.drive}`, {row.pace}, f = {row.timestep_factor:g}: {row.core_hours:.1f} "
-            f"core-hours** for {row.grains} grains{span}. {how}{missing}{compared} {seeds}"
-            f"Without the correction, first seeds only: {row.core_hours_uncorrected:.1f}. Of the total, "
-            f"{100 * row.part_run_in_full:.0f} % belong to cells whose grain was run in full.\n"
-        )
+    words = ["## Cost of the paper\n", _where(totals), table(COST_HEAD, rows), COST_NOTE]
     by = cells.pivot_table(index=["drive", "type"], columns="size_nm", values="core_hours_cell", aggfunc="sum")
     words.append("Core-hours by type and size, all materials and seeds; growth and spin-up, not the start of jobs:\n")
     words.append(

@@ -95,10 +95,13 @@ def test_projection_multiplies_only_what_grows_with_the_steps(benchmarks, monkey
     monkeypatch.setattr(cost, "_find", lambda rows, plan, drive, cell, level: runs.get(level))
     # seconds = 24/coarse + 0.6
     monkeypatch.setattr(cost, "_by_epsilon", lambda plan, drive: drive == "prescribed")
+    monkeypatch.setattr(cost, "_waits", lambda plan, drive: drive == "waiting")
     assert cost.projected([], None, "prescribed", (), 10) == pytest.approx((24.6, 10000))
     assert cost.projected([], None, "prescribed", (), 30) is None
     runs["short"] = {"us_per_step": "5", "expected_steps": "2e6", "end": ""}
     assert cost.projected([], None, "literal", (), 10) == pytest.approx((10.0, 2e6))
+    runs[1] = {"seconds": "7.5", "steps": "20000", "end": ""}
+    assert cost.projected([], None, "waiting", (), 10) == (7.5, 20000.0)
 
 
 def test_scaling_has_every_number_and_memory_beyond_the_state(results):

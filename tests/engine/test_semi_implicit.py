@@ -70,7 +70,7 @@ def dense_matrix(state, theta, dt):
 def test_forces_are_weighed_by_the_matrix_of_the_contacts():
     state = cluster()
     theta, dt = 0.5, 3e-11
-    work = _work(state, LAW)
+    work = _work(state)
     make_matrix(state, LAW, BOX, theta, dt, work)
     rng = np.random.default_rng(3)
     rows = monomer_rows(state)
@@ -86,7 +86,7 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts():
 
 def test_rigid_motion_has_its_true_mass_and_is_not_calmed():
     state = cluster()
-    work = _work(state, LAW)
+    work = _work(state)
     make_matrix(state, LAW, BOX, 0.5, 1e-10, work)
     rows = monomer_rows(state)
     rng = np.random.default_rng(0)

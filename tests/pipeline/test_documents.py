@@ -25,3 +25,17 @@ def test_a_verdict_that_flips_is_an_error():
 def test_what_cannot_be_filled_is_one_sentence(value, said):
     with pytest.raises(InputError, match=said):
         fill("{{a:.2f}}", value)
+
+
+TEXT = "X is {{X of a}}, N is {{ N }} and again {{X of a}}; {{later | not yet computed}}."
+
+
+def test_slots_with_words_of_their_own_need_no_value():
+    assert list(dict.fromkeys(slots(TEXT))) == ["X of a", "N", "later"]
+    assert fill(TEXT, {"X of a": "0.5", "N": "3", "more": "7"}) == "X is 0.5, N is 3 and again 0.5; not yet computed."
+    assert fill(TEXT, {"X of a": "0.5", "N": "3", "later": "8"}).endswith("; 8.")
+
+
+def test_a_slot_without_a_value_is_named():
+    with pytest.raises(InputError, match="page.md: the slot 'N' has no value; 1 slots have none"):
+        fill(TEXT, {"X of a": "0.5"}, "page.md")

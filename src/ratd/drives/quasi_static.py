@@ -16,15 +16,13 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
 from ratd.drives.rotating import (
-    ANGULAR_MOMENTUM, EXCESS, FRAGMENTS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, STRESS_SAMPLES,
-    STRESS_SUM, TORQUE_WORK, UNREST, UNWIND, centre, drop_departed, own_inertia, turn_to_take_out,
+    ANGULAR_MOMENTUM, EXCESS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, TORQUE_WORK, UNREST, UNWIND, centre,
+    drop_departed, follow_largest, sample_stress, turn_to_take_out,
 )  # fmt: skip
-from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import (
     DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STRETCH, TORQUE_X, VX,
     WX, X,
 )  # fmt: skip
-from ratd.observables.stress import total_stress
 
 TURN = 0.04
 """Angle [rad] by which the frame turns in a step at most: the Coriolis force is explicit, and grows what moves by
@@ -67,23 +65,15 @@ class QuasiStatic(NamedTuple):
         return False
 
     def follow(self, state, changed):
-        state.drive[FRAGMENTS] = label_fragments(state)
-        state.drive[OWN_INERTIA] = own_inertia(state)
+        follow_largest(state, changed)
         if changed:
-            # They were those of the old fragment.
-            state.drive[UNWIND] = 0.0
-            state.drive[EXCESS] = math.nan
             state.drive[ANGULAR_MOMENTUM] = math.nan
-            centre(state)
 
     def leave(self, state, law):
-        if state.drive[FRAGMENTS] < 2.0:
-            return 0
-        return drop_departed(state, law, np.int64(state.drive[FRAGMENTS]))
+        return drop_departed(state, law)
 
     def sample(self, state, law):
-        state.drive[STRESS_SUM] += total_stress(state, law)
-        state.drive[STRESS_SAMPLES] += 1.0
+        sample_stress(state, law)
         # The drag holds nothing at rest but in this frame: off the axis the centre of mass would run away within some
         # 1/omega. It is put back before that grows beyond rounding.
         centre(state)

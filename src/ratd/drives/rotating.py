@@ -88,26 +88,16 @@ class Rotating(NamedTuple):
         return not self.torque
 
     def follow(self, state, changed):
-        fragments = label_fragments(state)
-        state.drive[FRAGMENTS] = fragments
-        state.drive[OWN_INERTIA] = own_inertia(state)
+        follow_largest(state, changed)
         omega, acceleration = angular_velocity(self, state.scalar[TIME])
         state.drive[OMEGA] = state.drive[GREATEST] = omega
         state.drive[ACCELERATION] = acceleration
-        if changed:
-            # They were those of the old fragment; nothing can be foretold of the new one before its first step.
-            state.drive[UNWIND] = 0.0
-            state.drive[EXCESS] = math.nan
-            centre(state)
 
     def leave(self, state, law):
-        if state.drive[FRAGMENTS] < 2.0:
-            return 0
-        return drop_departed(state, law, np.int64(state.drive[FRAGMENTS]))
+        return drop_departed(state, law)
 
     def sample(self, state, law):
-        state.drive[STRESS_SUM] += total_stress(state, law)
-        state.drive[STRESS_SAMPLES] += 1.0
+        sample_stress(state, law)
         if state.counter[STEPS] % CENTRE_EVERY == 0:
             centre(state)
 
@@ -344,6 +334,25 @@ def turn_to_take_out(excess, last_excess, last_unwind):
 
 
 @jit
+def follow_largest(state, changed):
+    """Find the largest fragment and what is known of it; `changed` where contacts have come or gone."""
+    state.drive[FRAGMENTS] = label_fragments(state)
+    state.drive[OWN_INERTIA] = own_inertia(state)
+    if changed:
+        # They were those of the old fragment; nothing can be foretold of the new one before its first step.
+        state.drive[UNWIND] = 0.0
+        state.drive[EXCESS] = math.nan
+        centre(state)
+
+
+@jit
+def sample_stress(state, law):
+    """Take a sample of the total stress for its mean over a recording interval."""
+    state.drive[STRESS_SUM] += total_stress(state, law)
+    state.drive[STRESS_SAMPLES] += 1.0
+
+
+@jit
 def own_inertia(state):
     """Sum of the moments of inertia of the largest fragment's monomers about their own centres [kg m2]."""
     inertia = 0.0
@@ -390,7 +399,7 @@ def centre(state):
 
 
 @jit
-def drop_departed(state, law, fragments):
+def drop_departed(state, law):
     """Drop the fragments that have left for good, noting their mass and number of monomers.
 
     A fragment has left when all of it lies outside the sphere around the centre of mass that holds the largest
@@ -400,15 +409,17 @@ def drop_departed(state, law, fragments):
     Parameters
     ----------
     state : State
+        Its fragments as `follow_largest` has found them.
     law : part
-    fragments : int
-        Number of fragments, as `label_fragments` has labelled them.
 
     Returns
     -------
     int
         Number of fragments dropped. The arrays hold the remaining monomers in their old order.
     """
+    fragments = np.int64(state.drive[FRAGMENTS])
+    if fragments < 2:
+        return 0
     n = state.counter[MONOMERS]
     monomer = state.monomer
     outer = 0.0

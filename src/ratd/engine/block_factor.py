@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.base.vectors8 import add8, load8, multiply8, spread8, store8, subtract8, sum8
+from ratd.base.vectors import add8, load8, multiply8, spread8, store8, subtract8, sum8
 
 SIDE = 6
 PADDED = 8

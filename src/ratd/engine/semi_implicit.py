@@ -3,7 +3,7 @@
 In place of M the step uses M' = M + theta dt^2 sum J^T K J + dt sum J^T C J over the contacts, with J the relative
 motion at a contact, K its stiffness and C its damping. Soft motion, which is what a slowly loaded aggregate does, has
 J near 0 and keeps its mass; stiff vibrations become slow enough for the step. Equilibria do not depend on M'. Rigid
-motion of a fragment has J = 0, so both momenta are kept.
+motion of a fragment has J = 0, so momentum is kept, and angular momentum as far as the matrix has followed.
 """
 
 import math
@@ -50,8 +50,8 @@ class Work(NamedTuple):
     made : (2,) float64
         Step [s] for which the matrix was made, 0 when it has to be made anew; angle [rad] by which a contact may have
         turned since.
-    count : (2,) int64
-        Steps since the last change of the step's length; matrices made.
+    count : (1,) int64
+        Steps since the last change of the step's length.
     """
 
     factor: BlockFactor
@@ -102,10 +102,10 @@ class SemiImplicit(NamedTuple):
             state.scalar[DT] = rung_below(self.longest, self.first * shortest)
 
     def prepare(self, state, law):
-        return _work(state, law)
+        return _work(state)
 
     def renew(self, state, law, work):
-        return _renewed(state, law, work)
+        return _renewed(state, work)
 
     def step(self, state, law, drive, box, scratch, work):
         scalar, counter = state.scalar, state.counter
@@ -152,12 +152,12 @@ def rung_below(longest, step):
 
 
 @jit
-def _work(state, law):
+def _work(state):
     n, contacts = state.counter[MONOMERS], state.counter[CONTACTS]
     factor = order_blocks(n, state.pair_i, state.pair_j, contacts)
     block = np.empty(contacts, dtype=np.int64)
     _find_blocks(state, factor, block)
-    return Work(factor, block, np.zeros(PADDED * n), np.zeros(2), np.zeros(2, dtype=np.int64))
+    return Work(factor, block, np.zeros(PADDED * n), np.zeros(2), np.zeros(1, dtype=np.int64))
 
 
 @jit
@@ -172,7 +172,7 @@ def _find_blocks(state, factor, block):
 
 
 @jit
-def _renewed(state, law, work):
+def _renewed(state, work):
     """The same after contacts have changed; the order of elimination stays where the pattern has room for them."""
     contacts = state.counter[CONTACTS]
     if work.factor.place.shape[0] == state.counter[MONOMERS]:
@@ -180,7 +180,7 @@ def _renewed(state, law, work):
         if _find_blocks(state, work.factor, block):
             work.made[0] = 0.0
             return Work(work.factor, block, work.x, work.made, work.count)
-    fresh = _work(state, law)
+    fresh = _work(state)
     fresh.count[:] = work.count
     return fresh
 
@@ -236,7 +236,6 @@ def make_matrix(state, law, box, theta, dt, work):
     if not factorise(factor):
         state.scalar[FASTEST] = math.nan
     work.made[0], work.made[1] = dt, 0.0
-    work.count[1] += 1
 
 
 @jit(forceinline=True)

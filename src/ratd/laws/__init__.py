@@ -20,13 +20,16 @@ energies(contact, at)
     Potential energies [J]: normal, sliding, rolling, twisting.
 damping_coefficient(contact, at)
     Damping coefficient [kg/s] by which the implicit damping is weighted.
+damping_now(contact, at)
+    Damping coefficient [kg/s] of the contact as it is.
 contact_radius(contact, at)
     Radius of the contact area [m].
 stiffness(contact, at)
     k_n, k_s [N/m] and k_r, k_t [N m] of a contact, not below those of any state that it may reach in a step.
 
-What a law does not have (an integrator asks for `stiffness`, stresses for `contact_radius`) is an error when it is
-compiled. `tests/laws/test_own_law.py` adds a law in one file. A contact begins when two surfaces touch.
+What a law does not have is an error when it is compiled: the semi-implicit step asks for `stiffness` and
+`damping_now`, stresses for `contact_radius`. `tests/laws/test_own_law.py` adds a law in one file. A contact begins
+when two surfaces touch.
 
 jkr_with_springs         the law of Johnson, Kendall & Roberts with springs of limited displacement: `jkr`
 dmt_with_friction        the law of Derjaguin, Muller & Toporov with friction of limited force: `dmt`

@@ -241,7 +241,7 @@ def section(config, name, schemas="config/schema"):
     Returns
     -------
     shared : dict
-        The config without the experiments.
+        The config without the experiments; ``results`` without a slash at its end.
     own : dict
         The keys of the experiment.
     materials : dict of str to Material
@@ -262,6 +262,7 @@ def section(config, name, schemas="config/schema"):
     check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,))
     check_results_folder(config["results"])
     shared = {key: value for key, value in config.items() if key in layout["required"]}
+    shared["results"] = shared["results"].rstrip("/") or "/"
     return shared, own, read_materials(config["materials_file"], read_yaml(schemas / "materials.schema.yaml"))
 
 

@@ -1,8 +1,9 @@
 """Documents: a template that a person wrote, with slots for numbers.
 
 A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
-error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. A *verdict* is ``{{name=holds}}``: it prints
-the word, and is an error when the data give another one. Then a person has to read the sentence again.
+error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. ``{{name | words}}`` has words that stand
+there as long as there is no value; every other slot must have one. A *verdict* is ``{{name=holds}}``: it prints the
+word, and is an error when the data give another one. Then a person has to read the sentence again.
 
 Lines between ``<!-- if name -->`` (or ``if not name``) and ``<!-- end -->`` stand only where there are data of this
 name, that is values that begin with ``name.``; such parts may stand in each other.
@@ -17,7 +18,7 @@ from ratd.base.errors import InputError
 
 __all__ = ["Measured", "fill", "slots"]
 
-_SLOT = re.compile(r"\{\{\s*([A-Za-z0-9_.-]+)\s*(?:([:=])([^}]*))?\}\}")
+_SLOT = re.compile(r"\{\{\s*([^{}:=|]+?)\s*(?:([:=|])([^}]*))?\}\}")
 _CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -34,14 +35,16 @@ def slots(template):
     return [name for name, _, _ in _SLOT.findall(template)]
 
 
-def fill(template, values):
+def fill(template, values, where="the template"):
     """Text of a template with its slots filled.
 
     Parameters
     ----------
     template : str
     values : dict
-        Name -> number, `Measured`, or text; a verdict is a text.
+        Name -> number, `Measured`, or text; a verdict is a text. There may be more of them than slots.
+    where : str
+        Name of the template, for the message.
 
     Returns
     -------
@@ -53,10 +56,17 @@ def fill(template, values):
         One sentence: a slot that no value fits, a number that is not finite, or a verdict that is not the one in the
         template.
     """
-    return _SLOT.sub(lambda found: _filled(values, *found.groups()), _kept(template, values))
+    kept = _kept(template, values, where)
+    missing = [name for name, sign, _ in _SLOT.findall(kept) if name not in values and sign != "|"]
+    if missing:
+        near = ", ".join(get_close_matches(missing[0], values)) or f"{len(values)} others"
+        raise InputError(
+            f"{where}: the slot {missing[0]!r} has no value; {len(missing)} slots have none; there are {near}"
+        )
+    return _SLOT.sub(lambda found: _filled(values, where, *found.groups()), kept)
 
 
-def _kept(template, values):
+def _kept(template, values, where):
     """The lines of a template that are to stand."""
     names = {name.partition(".")[0] for name in values if "." in name}
     inside, lines = [], []
@@ -69,22 +79,22 @@ def _kept(template, values):
         elif inside:
             inside.pop()
         else:
-            raise InputError("the template has an 'end' without an 'if' before it")
+            raise InputError(f"{where} has an 'end' without an 'if' before it")
     if inside:
-        raise InputError("the template has an 'if' without an 'end' behind it")
+        raise InputError(f"{where} has an 'if' without an 'end' behind it")
     return "".join(lines)
 
 
-def _filled(values, name, sign, form):
-    if name not in values:
-        near = ", ".join(get_close_matches(name, values)) or f"{len(values)} others"
-        raise InputError(f"the slot {name} of the template has no value; there are {near}")
-    value = values[name]
+def _filled(values, where, name, sign, form):
+    if sign == "|":
+        value, form = values.get(name, form.strip()), ""
+    else:
+        value = values[name]
     if sign == "=":
         if value != form.strip():
             raise InputError(
-                f"the verdict {name} is {value!r}, but the template says {form.strip()!r}: read the sentences around "
-                "it again"
+                f"the verdict {name} is {value!r}, but {where} says {form.strip()!r}: read the sentences around it "
+                "again"
             )
         return form.strip()
     if isinstance(value, str):

@@ -11,6 +11,7 @@ import numpy as np
 from ratd.aggregates.growth import grow
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.same_grains import first_step
 from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -31,8 +32,6 @@ COLUMNS = {
     "stretched": ("1", "I_1 over that at rest when it turns so fast"),
 }
 KIND = table_kind("literal", "The literal drive", COLUMNS)
-REFERENCE = {"timestep_factor": 0.05}
-"""Run of the consistent drive that the others are compared with, at the epsilon of production of the type."""
 NOT_KNOWN = {"turned": np.nan, "stretched": np.nan}
 EXPLICIT_END, EXACT_END = 1.25, 3.0
 """Runs go on to so many times the omega at which a solid grain parts."""
@@ -57,7 +56,7 @@ def compute(settings, progress=None):
     grain = grow(settings["type"], settings["a_eff"], settings["material"], settings["seed"])
     share = grain.shape.spin_share
     parts, factors = sorted(settings["part_of_limit"]), sorted(settings["timestep_factor"])
-    reference = _row(grain, share, drive="prescribed", **REFERENCE)
+    reference = _row(grain, share, drive="prescribed")
     rows = [reference]
     runs = [(part, f, "explicit") for part in parts for f in factors]
     runs += [(part, factors[-1], "exact") for part in parts[-2:]]
@@ -65,7 +64,7 @@ def compute(settings, progress=None):
     threshold = reference["omega_mass_75"] if reference["omega_mass_75"] > 0.0 else reference["omega_first_loss"]
     limit = threshold / share
     for part, f, coriolis in runs:
-        dt = reference["timestep"] * f / reference["timestep_factor"]
+        dt = first_step(grain, f)
         acceleration = (part * limit) ** 3 * dt
         end = EXACT_END * limit
         if coriolis == "explicit":

@@ -13,7 +13,7 @@ from ratd.aggregates.growth import grow
 from ratd.base.statistics import median_of
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
-from ratd.experiments.spin_up.how import STEP
+from ratd.experiments.spin_up.how import DRIVES, STEP
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
@@ -21,7 +21,7 @@ from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
 COLUMNS = {
     "vary": ("", "what is changed, production where nothing is"),
-    "value": ("1", "to what: a number, or the place in the list of words of VARIED"),
+    "value": ("1", "to what: a number, or the place in the list of words of WORDS"),
     **GRAIN_COLUMNS,
     "outcome": ("", "how the run ended"),
     "steps": ("1", "time steps up to the end"),
@@ -38,7 +38,7 @@ KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against eac
 PRODUCTION = "production"
 MOVED = 1e-12
 """Distance [m] by which the start of a repeat is moved."""
-WORDS = {"drive": ("prescribed", "torque", "literal"), "integrator": ("semi-implicit", "leapfrog")}
+WORDS = {"drive": DRIVES, "integrator": ("semi-implicit", "leapfrog")}
 """What is changed to a word, and the words."""
 
 

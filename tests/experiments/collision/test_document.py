@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ratd.experiments.collision.document import claims, values, with_error
-from ratd.experiments.collision.slots import fill
 from ratd.experiments.collision.tables import findings
+from ratd.pipeline.documents import fill
 from tiny_pipeline import ROOT
 
 DOCS = ROOT / "docs"

@@ -12,7 +12,7 @@ from ratd.experiments.collision.figures.look import is_equal
 from ratd.experiments.collision.figures.scaling import WIDEST
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
-from ratd.experiments.collision.slots import fill
+from ratd.pipeline.documents import fill
 
 __all__ = ["claims", "document", "values"]
 

@@ -132,7 +132,7 @@ class Plan:
 
     def __init__(self, config, materials, results):
         self.config, self.materials = config, materials
-        self.results = results.rstrip("/") or "/"
+        self.results = results
         self.entries = [self._cells(entry) for entry in self.config["runs"]]
         self.cells = self._joined()
 

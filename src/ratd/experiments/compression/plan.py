@@ -79,7 +79,7 @@ class Plan:
     def __init__(self, config, materials, results):
         self.config = config
         self.materials = materials
-        self.results = results.rstrip("/") or "/"
+        self.results = results
 
     @property
     def figures(self):

@@ -8,22 +8,14 @@ from ratd.base.errors import InputError
 from ratd.drives import quasi_static as slow
 from ratd.drives import rotating as fast
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.semi_implicit import semi_implicit
+from ratd.engine.semi_implicit import SemiImplicit, semi_implicit
 
 __all__ = [
-    "DRAG",
-    "DRIVES",
-    "EPSILON",
-    "FIRST_LOSS",
-    "PACE",
-    "STRETCH",
-    "TIMESTEP_FACTOR",
-    "UNREST",
-    "How",
+    "DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "STEP", "STRETCH", "TIMESTEP_FACTOR", "UNREST", "How",
     "how_to_turn",
-]
+]  # fmt: skip
 
-DRIVES = ("prescribed", "torque", "literal")
+DRIVES = tuple(dict.fromkeys((*slow.DRIVES, *fast.DRIVES)))
 """What turns a grain: an omega that rises, an angular momentum that rises, or the equations as printed."""
 QUASI_STATIC = "quasi-static"
 
@@ -124,8 +116,8 @@ def how_to_turn(
             "angular_acceleration": slow.rise(motion, 0.0),
         }
         numbers |= {name: getattr(motion, name) for name in ("stretch", "unrest", "pace", "drag")}
-    numbers["displacement"] = float(getattr(integrator, "displacement", np.nan))
-    words["integrator"] = "semi-implicit" if hasattr(integrator, "displacement") else "leapfrog"
-    if words["integrator"] == "semi-implicit":
-        words["damping"] = "implicit"
+    words["integrator"] = "leapfrog"
+    if isinstance(integrator, SemiImplicit):
+        numbers["displacement"] = integrator.displacement
+        words |= {"integrator": "semi-implicit", "damping": "implicit"}
     return How(motion, integrator, words | numbers)

@@ -94,7 +94,7 @@ class Plan(Settings):
 
     def __init__(self, config, materials, results):
         super().__init__(config, materials)
-        self.results = results.rstrip("/") or "/"
+        self.results = results
         self.notes = []
 
     @property

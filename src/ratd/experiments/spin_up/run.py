@@ -173,7 +173,7 @@ class Run:
 
     def begin(self, state):
         """Start from a relaxed state."""
-        self._start(state, [], [])
+        self.state = state
         self._choose_step(self.integrator)
         self._start(state, [record(state, self.law, self.grain.material.density)], [])
         if self.snapshot_every:

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import is_equal, means, velocity_axis
+from ratd.experiments.collision.figures.look import collisions_of, is_equal, means, velocity_axis
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
-from ratd.pipeline import io
 
 WAYS = {
     "by_damping": ("normal damping", "#0072B2", "o"),
@@ -53,7 +52,7 @@ def dissipation(table, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    table = io.read(files["table"], "collision_table").to_dataframe()
+    table = collisions_of(files)
     equal = table[is_equal(table) & (table["law"] == settings["law"])]
     largest = equal["cluster"].iloc[int(np.argmax(equal["largest_radius"]))] if len(equal) else settings["twin"]
     return dissipation(table, settings["law"], list(dict.fromkeys([largest, settings["twin"], settings["mrn"]])))

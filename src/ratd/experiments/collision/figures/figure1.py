@@ -3,10 +3,8 @@
 import numpy as np
 
 from ratd.aggregates.mrn import LARGEST, SMALLEST, part_above
-from ratd.experiments.collision.figures.look import radius_label
+from ratd.experiments.collision.figures.look import radii_of, radius_label
 from ratd.pictures.style import ONE_COLUMN, new_figure, styled
-from ratd.pipeline import io
-from ratd.pipeline.blocks import rows
 
 BINS = 18
 
@@ -54,6 +52,4 @@ def figure1(samples):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from the cluster of its settings as built."""
-    return figure1(
-        [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
-    )
+    return figure1(radii_of(files))

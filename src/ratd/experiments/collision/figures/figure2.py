@@ -3,10 +3,9 @@
 import numpy as np
 
 from ratd.aggregates.mrn import moment_of_length, mrn_length, part_above, sample_length
+from ratd.experiments.collision.figures.look import radii_of
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY, ONE_COLUMN, new_figure, styled
-from ratd.pipeline import io
-from ratd.pipeline.blocks import rows
 
 HIGHEST = 8.0
 
@@ -42,6 +41,4 @@ def figure2(samples):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from the cluster of its settings as built."""
-    return figure2(
-        [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
-    )
+    return figure2(radii_of(files))

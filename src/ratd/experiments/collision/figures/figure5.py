@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import (
+    collisions_of,
     colour_of,
     is_equal,
     marker_of,
@@ -14,7 +15,6 @@ from ratd.experiments.collision.figures.look import (
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
-from ratd.pipeline import io
 
 
 @styled
@@ -59,4 +59,4 @@ def figure5(table, law):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure5(io.read(files["table"], "collision_table").to_dataframe(), settings["law"])
+    return figure5(collisions_of(files), settings["law"])

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import (
+    collisions_of,
     MRN_STYLE,
     colour_of,
     is_equal,
@@ -15,7 +16,6 @@ from ratd.experiments.collision.figures.look import (
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_RADII
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
-from ratd.pipeline import io
 
 BESIDE = sorted({radius for radius, _ in PRINTED_RADII.values()})
 
@@ -66,4 +66,4 @@ def figure6(table, law, mrn):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure6(io.read(files["table"], "collision_table").to_dataframe(), settings["law"], settings["mrn"])
+    return figure6(collisions_of(files), settings["law"], settings["mrn"])

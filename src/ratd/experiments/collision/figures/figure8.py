@@ -3,9 +3,8 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import MARKERS, is_equal, means
+from ratd.experiments.collision.figures.look import collisions_of, MARKERS, is_equal, means
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
-from ratd.pipeline import io
 
 MOST = 6
 """Velocities that are drawn at most."""
@@ -55,4 +54,4 @@ def figure8(table, law, mrn):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure8(io.read(files["table"], "collision_table").to_dataframe(), settings["law"], settings["mrn"])
+    return figure8(collisions_of(files), settings["law"], settings["mrn"])

@@ -4,8 +4,10 @@ import numpy as np
 from matplotlib import colormaps
 
 from ratd.pictures.style import GREY
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
 
-__all__ = ["MRN_STYLE", "colour_of", "label_of", "means", "plot_means", "radius_label"]
+__all__ = ["MRN_STYLE", "collisions_of", "colour_of", "label_of", "means", "plot_means", "radii_of", "radius_label"]
 
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
@@ -33,6 +35,16 @@ def _place(radius, radii):
 def radius_label(radius):
     """Text of a radius [m], such as "0.314 µm"."""
     return f"{radius * 1e6:.3g} µm"
+
+
+def collisions_of(files):
+    """The table of all collisions, from the files of a job that draws a figure."""
+    return io.read(files["table"], "collision_table").to_dataframe()
+
+
+def radii_of(files):
+    """Radii of each sample of a cluster as built, list of (n,) array, from the files of a job that draws a figure."""
+    return [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
 
 
 def label_of(table):

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import means
+from ratd.experiments.collision.figures.look import collisions_of, means
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, new_figure, styled
-from ratd.pipeline import io
 
 CLUSTERS = {
     "353nm": "equal, 0.353 µm",
@@ -73,4 +72,4 @@ def question(table, velocities):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return question(io.read(files["table"], "collision_table").to_dataframe(), settings["velocities"])
+    return question(collisions_of(files), settings["velocities"])
