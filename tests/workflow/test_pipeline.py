@@ -243,10 +243,10 @@ def test_results_copied_elsewhere_are_used_if_they_are_what_the_plan_makes(copy_
     assert last.startswith(
         "results/tiny: files that Snakemake has no record of were made with other settings or another"
     )
-    assert "those of now (2 in results/tiny/spinup), for example results/tiny/spinup/prescribed" in last
-    assert "with --forcerun spin_up makes them anew" in last
-    expected = {"spin_up", "disrupt", "ensemble"} | FIGURES - {"figure6"}
-    assert set(copy_of.planned("--forcerun", "spin_up")) == expected
+    assert "2 in results/tiny/spinup" in last and "for example results/tiny/" in last
+    assert "with --forcerun parameters spin_up makes them anew" in last
+    expected = {"parameters", "parameter_table", "figure9", "spin_up", "disrupt", "ensemble"} | FIGURES - {"figure6"}
+    assert set(copy_of.planned("--forcerun", "parameters", "spin_up")) == expected
 
 
 def test_source_of_copied_results_is_that_of_now_or_they_are_named(copy_of):
