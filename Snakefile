@@ -22,6 +22,9 @@ pathvars:
     results=results_folder(config),
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/aggregates.smk"
 include: "workflow/rules/spin_up.smk"
 include: "workflow/rules/figures.smk"
@@ -58,6 +61,42 @@ rule write_config:
         "Write down the config"
     script:
         "workflow/scripts/analyse.py"
+
+
+# What was made, from what, with what, for archives: `snakemake --cores 2 crate`.
+rule crate:
+    input:
+        rules.write_config.output.config,
+        rules.grains.input,
+        rules.spinups.input,
+        rules.disruptions.input,
+        rules.tables.input,
+        rules.figures.input,
+    output:
+        crate="<results>/ro-crate-metadata.json",
+    log:
+        "<results>/logs/crate.log",
+    benchmark:
+        "<results>/benchmarks/crate.tsv"
+    conda:
+        "workflow/envs/ratd.yaml"
+    resources:
+        mem_mb=500,
+        runtime=30,
+    params:
+        task=task("analyse", "ratd.pipeline.crate:describe"),
+        settings={},
+    message:
+        "Describe the results as an RO-Crate"
+    script:
+        "workflow/scripts/analyse.py"
+
+
+# Snakemake compares results with what it wrote down of them, where it did.
+if workflow.is_main_process and not {"--forceall", "-F"} & set(sys.argv):
+    # what is forced is known to Snakemake only after it has read this file
+    forced = sys.argv if {"--forcerun", "-R"} & set(sys.argv) else ()
+    checked(unrecorded.check, workflow.rules, config["results"], forced)
 
 
 # What is finished needs no pieces any more: a forced rerun is to compute it anew.

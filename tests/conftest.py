@@ -1,6 +1,6 @@
 """Order of the test files."""
 
-LONGEST = ("test_pipeline.py",)
+LONGEST = ("test_pipeline.py", "test_tutorial.py", "test_slurm.py")
 """Started first, so that no worker is left alone with it at the end."""
 
 

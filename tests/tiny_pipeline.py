@@ -12,40 +12,7 @@ import yaml
 from ratd.pipeline.provenance import file_hash
 
 ROOT = Path(__file__).parents[1]
-TINY = {
-    "materials": ["q-S"],
-    "types": ["BA", "BAM2"],
-    "sizes_nm": [50],
-    "seeds": {"first": 0, "number": 6},
-    "block_size": 6,
-    "small_grains": None,
-    "run": {"stretch": 1e-12},
-    "snapshots": {"every": 100, "grains": [{"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1}]},
-    "ensemble": {"bootstrap": 20},
-    "figures": {
-        "figure1": {"sizes_nm": [50]},
-        "figure4": {"material": "q-S", "type": "BAM2", "size_nm": 50},
-        "figure5": {"material": "q-S", "type": "BAM2", "size_nm": 50, "seed": 1},
-        "figure6": {"material": "q-S", "sizes_nm": [50]},
-        "figure8": {"material": "q-S", "type": "BAM2", "scaled_at_nm": 50},
-        "figure9": {
-            "material": "q-S",
-            "types": ["BAM2"],
-            "sizes_nm": [50],
-            "seeds": {"first": 0, "number": 1},
-            "xi_c_nm": [6.4],
-            "T_vis_ps": [9],
-            "literal": {"angular_acceleration": 1.0e17, "timestep_factor": 0.1},
-        },
-        "calibration": {
-            "size_nm": 50,
-            "seeds": {"number": 1},
-            "runs": [{"angular_acceleration": rate, "timestep_factor": 0.02} for rate in (1e17, 3e17)],
-        },
-        "formulae": None,
-        "figure10": {"number": 2, "damped": {"epsilon": 0.05}, "undamped": {"epsilon": 0.05}},
-    },
-}
+TINY = yaml.safe_load((ROOT / ".test" / "tiny.yaml").read_text())["spin_up"]
 """What differs from the config of the spin-up as it comes."""
 
 

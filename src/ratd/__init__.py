@@ -15,6 +15,8 @@ Any spheres, by any contact law, in open space or in a periodic box:
 
 from importlib import import_module
 
+__version__ = "1.0.0"
+
 # Loaded on first use: drawing a figure must not wait for compiled code, and a source hash must not follow this file.
 _HOME = {
     "Grain": "aggregates.grain",
@@ -38,8 +40,10 @@ _HOME = {
     "mrn": "aggregates.mrn",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
+    "read_particles": "aggregates.particles",
     "spin_up": "experiments.spin_up.run",
     "stretch": "experiments.compression.stretch",
+    "write_particles": "aggregates.particles",
 }
 __all__ = sorted([*_HOME, "laws"])
 

@@ -5,7 +5,7 @@ import pytest
 
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
-from ratd.base.materials import Material, get_material
+from ratd.base.materials import get_material
 from ratd.geometry.shape import enclosing_radius
 from ratd.laws.contact_constants import equilibrium_compression
 
@@ -43,9 +43,8 @@ def test_the_arrays_are_contiguous_copies():
     assert np.all(grain.position[0] == 0.0) and grain.radius[0] == 20e-9
 
 
-def test_lists_and_whole_numbers_are_taken():
-    soft = Material("soft", 1e-9, 1e9, 0.3, 1000.0)
-    grain = Grain([[0, 0, 0], [0, 0, 2]], [1, 1], soft)
+def test_lists_are_taken():
+    grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S")
     assert grain.position.dtype == np.float64
     assert grain.n_contacts == 1
 

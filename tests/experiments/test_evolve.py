@@ -29,7 +29,7 @@ NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
         ({"position": None}, "position is None"),
         ({"position": NAN}, "position has the shape .* finite numbers"),
         ({"position": PAIR[:, :2]}, r"position has the shape \(2, 2\)"),
-        ({"position": "far"}, "must be arrays of numbers"),
+        ({"position": "far"}, "position is not an array of numbers"),
         ({"velocity": NAN}, "velocity has the shape"),
         ({"spin": [1.0, 2.0]}, r"spin has the shape \(2,\)"),
         ({"material": "cheese"}, "The material is 'cheese'; allowed are"),
@@ -132,6 +132,13 @@ def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypa
     # that of other input is not used
     other = run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
     assert len(parts) == 12 and not other.identical(whole)
+    # nor that of another source
+    run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
+    assert len(parts) < 20
+    monkeypatch.setattr(module, "source_hash", lambda **_: "of yesterday")
+    before = len(parts)
+    run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
+    assert len(parts) == before + 8
 
 
 def test_velocity_and_spin_of_the_same_numbers_are_told_apart(tmp_path, monkeypatch):

@@ -13,10 +13,10 @@ import xarray as xr
 
 from files import make_grain
 from ratd.aggregates import files as grain_files
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.spin import told
-from ratd.pipeline import io, jobs, partial
+from ratd.pipeline import first_error, io, jobs, partial
 from tiny_pipeline import ROOT
 
 SCRIPTS = ROOT / "workflow" / "scripts"
@@ -262,7 +262,8 @@ def test_tidy_removes_partial_results_of_finished_files_only(tmp_path):
     finished, unfinished, at_work = (tmp_path / "a" / f"{name}.nc" for name in ("finished", "unfinished", "at_work"))
     for target in (finished, unfinished, at_work):
         partial.partial_folder(target).mkdir(parents=True)
-        (partial.partial_folder(target) / "seed_0.nc").write_text("")
+        for name in ("seed_0.nc", "lock", "seed_1.0123456789abcdef.checkpoint", "seed_2.nc.17.tmp"):
+            (partial.partial_folder(target) / name).write_text("")
     for target in (finished, at_work):
         target.write_text("")
     process = start_python(HOLD_LOCK, partial.partial_folder(at_work) / "lock", 1000)
@@ -302,3 +303,63 @@ def test_locks_of_a_killed_snakemake_are_removed_and_those_of_a_live_one_are_not
     assert not lock.exists()
     fourth.kill()
     fourth.wait()
+
+
+def test_tidy_leaves_what_it_did_not_make(tmp_path):
+    for name in ("film.mp4", "notes.nc", "data.nc"):
+        (tmp_path / name).write_text("")
+        folder = partial.partial_folder(tmp_path / name)
+        folder.mkdir()
+        (folder / "frame_0.png").write_text("")
+    (partial.partial_folder(tmp_path / "notes.nc") / "lock").write_text("")
+    before = sorted(tmp_path.rglob("*"))
+    partial.tidy(tmp_path)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_first_error_of_a_run_is_kept(tmp_path):
+    place = tmp_path / "ratd.first_error"
+    first_error.keep("nobody made room", place)
+    assert first_error.kept(place) == ""
+    first_error.begin(place)
+    size = place.stat().st_size
+    for sentence in ("the first,\nin two lines, 100 µm", "the second"):
+        first_error.keep(sentence, place)
+    assert first_error.kept(place) == "the first, in two lines, 100 µm" and place.stat().st_size == size
+    first_error.begin(place)
+    assert first_error.kept(place) == ""
+
+
+def test_a_failed_job_keeps_its_error(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    first_error.begin()
+    with pytest.raises(SystemExit), jobs.Job(make_job(tmp_path)):
+        raise InputError("a is b; allowed: c")
+    with pytest.raises(ZeroDivisionError), jobs.Job(make_job(tmp_path)):
+        print(1 / 0)
+    assert first_error.kept() == "grow q-S 50 nm: error: a is b; allowed: c"
+
+
+def test_an_error_is_not_hidden_by_that_of_keeping_what_was_done(tmp_path, monkeypatch):
+    def full(*arguments):
+        raise FileError("x.nc: cannot be written (No space left on device)")
+
+    def make(seed, checkpoint):
+        if seed == 1:
+            monkeypatch.setattr(io, "write", full)
+            raise RuntimeError("the grain is lost")
+        return grain_files.grain_row(make_grain(seed), 1e8)
+
+    monkeypatch.chdir(tmp_path)
+    first_error.begin()
+    with pytest.raises(SystemExit), jobs.Job(make_job(tmp_path)) as job:
+        job.block(tmp_path / "x.nc", "grains", MATERIALS["q-S"], [0, 1], make)
+    assert "seed 1: the grain is lost" in first_error.kept()
+
+
+def test_a_log_that_cannot_be_written_stops_nothing(tmp_path):
+    job = make_job(tmp_path)
+    job.log = [str(tmp_path / "none" / "job.log")]
+    with jobs.Job(job) as running:
+        running.write("table_csv", "a text")
+    assert (tmp_path / "table.csv").read_text() == "a text"

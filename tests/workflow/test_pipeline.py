@@ -4,11 +4,14 @@ import os
 import re
 import shutil
 import signal
+import subprocess
 import time
 
 import pytest
 import yaml
+from rocrate.rocrate import ROCrate
 
+import browser
 from ratd.experiments.spin_up import run_files
 from ratd.pipeline import io
 from ratd.pipeline.partial import partial_folder
@@ -204,14 +207,76 @@ def test_kill_in_the_middle_then_the_same_command_again(finished, tmp_path):
 
 
 def test_damaged_input_ends_its_job_with_a_name_and_touches_nothing_else(copy_of):
+    whole = copy_of.files()
     path = copy_of.folder / GRAINS
     path.write_bytes(path.read_bytes()[:1000])
     before = copy_of.files()
     done = copy_of.run(RUNS)
     assert done.returncode != 0
     assert f"error: {GRAINS}: is damaged" in done.stdout and "Traceback" not in done.stdout
+    # once more at the end, where one looks
+    last = done.stdout.splitlines()[-1]
+    assert GRAINS in last and last.endswith("remove it, and the same command makes it anew")
     after = copy_of.files()
     assert after == {name: content for name, content in before.items() if name != RUNS}
+    path.unlink()
+    assert copy_of.run(RUNS).returncode == 0
+    assert copy_of.files() == whole
+
+
+def test_a_file_of_other_grains_in_the_place_of_an_input_is_refused(copy_of):
+    shutil.copy(copy_of.folder / GRAINS.replace("BAM2", "BA"), copy_of.folder / GRAINS)
+    done = copy_of.run(RUNS)
+    assert done.returncode != 0
+    assert done.stdout.splitlines()[-1].endswith(
+        f"error: {GRAINS}: has the type BA, but lies where BAM2 belongs: remove it, and the same command makes it anew"
+    )
+
+
+def test_results_copied_elsewhere_are_used_if_they_are_what_the_plan_makes(copy_of):
+    shutil.rmtree(copy_of.folder / ".snakemake")
+    assert copy_of.planned() == {}
+    copy_of.write_config(TINY | {"run": {"stretch": 2e-12}, "figures": TINY["figures"] | {"figure6": None}})
+    done = copy_of.run("--dry-run")
+    assert done.returncode != 0
+    *_, last = done.stdout.splitlines()
+    assert last.startswith(
+        "results/tiny: files that Snakemake has no record of were made with other settings or another"
+    )
+    assert "2 in results/tiny/spinup" in last and "for example results/tiny/" in last
+    assert "with --forcerun parameters spin_up makes them anew" in last
+    expected = {"parameters", "parameter_table", "figure9", "spin_up", "disrupt", "ensemble"} | FIGURES - {"figure6"}
+    assert set(copy_of.planned("--forcerun", "parameters", "spin_up")) == expected
+
+
+def test_source_of_copied_results_is_that_of_now_or_they_are_named(copy_of):
+    shutil.rmtree(copy_of.folder / ".snakemake")
+    growth = copy_of.own_source() / "aggregates" / "growth.py"
+    growth.write_text(growth.read_text() + "\nNEW_CONSTANT = 1.0\n")
+    done = copy_of.run("--dry-run")
+    assert done.returncode != 0 and "2 in results/tiny/grains" in done.stdout.splitlines()[-1]
+
+
+def test_on_a_full_disk_the_last_line_says_so(tmp_path):
+    """On a small disk in memory, which only root may make."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=3000k", "none", str(folder)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("no small disk can be made here")
+    try:
+        pipeline = Pipeline(folder)
+        with open(folder / "filling", "wb") as filling:
+            filling.write(bytes(shutil.disk_usage(folder).free - 30_000))
+        done = pipeline.run(GRAINS)
+        assert done.returncode != 0
+        last = done.stdout.splitlines()[-1]
+        assert last.startswith(f"grow q-S BAM2 50 nm 0-5: error: {GRAINS}")
+        assert last.endswith(": cannot be written (No space left on device)")
+        (folder / "filling").unlink()
+        assert pipeline.run(GRAINS).returncode == 0
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
 
 
 def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
@@ -222,11 +287,45 @@ def test_output_that_was_removed_is_made_again_with_the_same_bytes(copy_of):
     assert (copy_of.folder / name).read_bytes() == content
 
 
-def test_report_is_one_page_with_captions(finished, tmp_path):
-    done = finished.run("--report", str(tmp_path / "report.html"))
+@pytest.fixture(scope="module")
+def report(finished, tmp_path_factory):
+    """The report of a finished pipeline."""
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    done = finished.run("--report", str(path))
     assert done.returncode == 0, done.stdout
-    page = (tmp_path / "report.html").read_text()
+    return path
+
+
+def test_report_is_one_page_with_captions(report):
+    page = report.read_text()
     for number in (2, 4, 5, 6, 7, 8, 9):
         caption = (ROOT / "workflow" / "report" / f"figure{number}.rst").read_text()
         first_words = re.search(r"\w[\w ]+\w", caption).group()
         assert f"figure{number}_prescribed.png" in page and first_words in page
+
+
+def test_report_in_a_browser(report):
+    """An opening text, all tables, the figures in the order of their numbers."""
+
+    def rows(page, category):
+        page.goto(report.resolve().as_uri())
+        page.get_by_text(category, exact=True).first.click()
+        page.wait_for_selector("tbody tr")
+        return [row.split("\t")[0].strip() for row in page.locator("tbody tr").all_inner_texts()]
+
+    with browser.opened(report) as page:
+        page.wait_for_selector("text=Dust aggregates, every monomer integrated.")
+        tables = ["Calibration of the drive literal", "Runs of figure 9, drive prescribed", "Table 1", "Table 2"]
+        assert rows(page, "Tables") == [*tables, "Table 3, drive prescribed"]
+        assert rows(page, "Figures") == ["1", "2", "4", "5", "6", "7", "8", "9", "10", "study"]
+        assert rows(page, "Interactive") == ["one grain coming apart"]
+
+
+def test_results_are_described_as_a_crate(copy_of):
+    done = copy_of.run("crate")
+    assert done.returncode == 0, done.stdout
+    crate = ROCrate(copy_of.folder / "results" / "tiny")
+    (run,) = crate.get_by_type("CreateAction")
+    made = {file.id for file in run["result"]}
+    assert {RUNS.removeprefix("results/tiny/"), "figures/figure7_prescribed.png"} <= made
+    assert [file.id for file in run["object"]] == ["config.yaml"]

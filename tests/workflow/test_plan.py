@@ -24,8 +24,10 @@ def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, sa
     done = pipeline.run()
     assert done.returncode != 0
     # before it stand remarks of Snakemake, which profile and which config files it uses
-    *remarks, sentence = [line for line in done.stdout.splitlines() if line]
-    assert sentence.startswith(f"config: {said}")
+    lines = [line for line in done.stdout.splitlines() if line]
+    sentences = [line for line in lines if line.startswith("config: ")]
+    remarks = [line for line in lines if line not in sentences]
+    assert sentences[0].startswith(f"config: {said}") and lines.index(sentences[0]) == len(remarks)
     assert all(line.startswith(("Using workflow specific profile", "Config file ")) for line in remarks)
     assert not (tmp_path / "results").exists()
 
@@ -39,6 +41,32 @@ def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):
     *_, sentence = [line for line in done.stdout.splitlines() if line]
     assert done.returncode != 0
     assert re.match(r"config/spin_up.yaml: line \d+: is not YAML", sentence)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (None, r"mine.yaml: cannot be read \(No such file or directory\)"),
+        ("results: [a\nspin_up: 1\n", "mine.yaml: line 2: is not YAML"),
+        ("results: a\nspin_up:\n  a: 1\n  a: 2\n", "mine.yaml: line 4: the key 'a' stands in one mapping twice"),
+        ("- results\n", "mine.yaml: is .'results'.; allowed: a mapping of keys"),
+    ],
+)
+def test_a_file_given_with_configfile_that_cannot_be_read_is_named(tmp_path, text, said):
+    pipeline = Pipeline(tmp_path)
+    if text is not None:
+        (tmp_path / "mine.yaml").write_text(text)
+    done = pipeline.run("--configfile", "mine.yaml", "--dry-run")
+    assert done.returncode == 1 and re.fullmatch(f"{said}.*\n", done.stdout)
+
+
+def test_cells_of_one_s_own_are_all_that_a_config_has_to_say(tmp_path):
+    """With notes on what it leaves out of the file that comes with ratd."""
+    pipeline = Pipeline(tmp_path)
+    pipeline.write_config({"materials": ["co-S"], "sizes_nm": [100], "seeds": {"number": 5}})
+    done = pipeline.run("--dry-run")
+    assert done.returncode == 0 and done.stdout.count("is left out, since the config has no such grains") == 8
+    assert pipeline.planned()["spin_up"] == 3
 
 
 @pytest.mark.parametrize(("fewer", "jobs"), [({"drives": ["literal"], "number": 2}, {"grown": 1}), ({"number": 2}, {})])

@@ -1,4 +1,5 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
+import atexit
 import re
 import sys
 from pathlib import Path
@@ -8,14 +9,21 @@ from snakemake.utils import min_version
 from ratd.base.errors import InputError
 from ratd.experiments.collision.plan import check as collision_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
-from ratd.pipeline import jobs
+from ratd.pipeline import first_error, jobs, unrecorded
 from ratd.pipeline.config import read_yaml
 from ratd.pipeline.partial import tidy
 from ratd.validation.plan import Checks
 
 min_version("9.27")
 
-jobs.release_stale_locks()
+# Not so in a job on a cluster, which is a Snakemake of its own and may outlive the one that sent it.
+if workflow.is_main_process:
+    jobs.release_stale_locks()
+# A dry run may be beside one that is at work.
+if workflow.is_main_process and not workflow.output_settings.dryrun:
+    # told again at the very end, below all that Snakemake says of it
+    first_error.begin()
+    atexit.register(lambda: print(first_error.kept(), end="", file=sys.stderr))
 
 
 def checked(read, *arguments):
@@ -51,6 +59,12 @@ def figure_settings(name):
 def piece_settings(check):
     """Function of the wildcards that gives the settings of a piece of a check."""
     return lambda w: CHECKS.pieces[w.extent][check][w.piece]
+
+
+def say(notes):
+    """Tell what the plan leaves out."""
+    if workflow.is_main_process:
+        print(*notes, sep="\n", end="\n" if notes else "", file=sys.stderr)
 
 
 # Snakemake reads these too, but does not say in which line one is no YAML.

@@ -1,5 +1,5 @@
 # Figures, PDF for print and PNG for the screen: one rule each, of the name of the figure.
-from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES
+from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, report_labels
 
 for name in (*FIGURES, *COMMON_FIGURES):
     stem = f"{name}_{{drive}}" if name in FIGURES else name
@@ -15,8 +15,7 @@ for name in (*FIGURES, *COMMON_FIGURES):
                     f"<results>/figures/{stem}.{form}",
                     caption=f"../report/{name}.rst",
                     category="Figures",
-                    labels={"figure": name, "format": form.upper()}
-                    | ({"drive": "{drive}"} if name in FIGURES else {}),
+                    labels=report_labels(name, form),
                 )
                 for form in ("pdf", "png")
             },

@@ -24,7 +24,7 @@ rule spin_up:
     conda:
         "../envs/ratd.yaml"
     resources:
-        runtime=10080,
+        runtime=lambda w, attempt: PLAN.spin_up_minutes(w.size, w.seeds, attempt),
     params:
         task=task("run", "ratd.experiments.spin_up.spin:block", "spinup"),
         settings=lambda w: PLAN.spin_up(w.drive, w.material, w.type, w.size, w.seeds),
@@ -73,7 +73,7 @@ rule ensemble:
             TABLE_3,
             caption="../report/table3.rst",
             category="Tables",
-            labels={"table": "Table 3", "drive": "{drive}"},
+            labels={"table": "Table 3, drive {drive}"},
         ),
     log:
         "<results>/logs/ensemble/{drive}.log",
@@ -159,14 +159,14 @@ rule composition:
             "<results>/tables/table1.csv",
             caption="../report/table1.rst",
             category="Tables",
-            labels={"table": "Table 1", "drive": "none"},
+            labels={"table": "Table 1"},
         ),
         table2="<results>/tables/table2.nc",
         table2_csv=report(
             "<results>/tables/table2.csv",
             caption="../report/table2.rst",
             category="Tables",
-            labels={"table": "Table 2", "drive": "none"},
+            labels={"table": "Table 2"},
         ),
     log:
         "<results>/logs/tables/composition.log",
@@ -251,7 +251,7 @@ rule parameter_table:
             "<results>/parameters/{drive}.csv",
             caption="../report/parameters.rst",
             category="Tables",
-            labels={"table": "Runs of figure 9", "drive": "{drive}"},
+            labels={"table": "Runs of figure 9, drive {drive}"},
         ),
     log:
         "<results>/logs/parameters/{drive}.log",
@@ -302,7 +302,7 @@ rule calibration:
             "<results>/calibration/fit.csv",
             caption="../report/calibration.rst",
             category="Tables",
-            labels={"table": "Calibration", "drive": "literal"},
+            labels={"table": "Calibration of the drive literal"},
         ),
     log:
         "<results>/logs/calibration/fit.log",
@@ -358,7 +358,7 @@ rule formula_table:
             "<results>/formulae/table.csv",
             caption="../report/formulae.rst",
             category="Tables",
-            labels={"table": "Single formulae as printed", "drive": "prescribed"},
+            labels={"table": "Single formulae as printed"},
         ),
     log:
         "<results>/logs/formulae/table.log",

@@ -59,6 +59,7 @@ register(
         },
         attributes=("material", "type"),
         ragged=("monomer",),
+        places=("grains/{material}/{type}/{size}nm/seeds_{seeds}.nc",),
     ),
 )
 

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ratd.base.checks import check_radii, far_apart, number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.materials import get_material
@@ -100,15 +101,15 @@ class Grain:
     """
 
     def __init__(self, position, radius, material, *, type=None, a_eff=None, seed=None):
-        self.position = _float_array(position, "position")
-        self.radius = _float_array(radius, "radius")
+        self.position = number_array(position, "position")
+        self.radius = number_array(radius, "radius")
         self.material = get_material(material)
         self.type = type
         self.seed = seed
         _check_arrays(self.position, self.radius)
         self.contacts, gap = _contacts(self.position, self.radius, self.material)
         _check_overlap(self.contacts, gap)
-        _check_one_piece(self.n_monomers, self.contacts)
+        _check_one_piece(self.position, self.radius, self.contacts)
         self.a_eff = self.effective_radius if a_eff is None else float(a_eff)
         if not abs(self.a_eff / self.effective_radius - 1.0) <= 1e-9:
             raise InputError(
@@ -153,14 +154,6 @@ class Grain:
         )
 
 
-def _float_array(values, name):
-    """A contiguous float64 copy, or one clear sentence."""
-    try:
-        return np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is not an array of numbers; it must hold finite numbers in m.") from None
-
-
 def _check_arrays(position, radius):
     if radius.ndim != 1 or position.shape != (len(radius), 3):
         raise InputError(
@@ -175,6 +168,7 @@ def _check_arrays(position, radius):
     wrong = np.flatnonzero(radius <= 0.0)
     if len(wrong):
         raise InputError(f"radius[{wrong[0]}] is {radius[wrong[0]]:g}; every radius must be above 0 (in m).")
+    check_radii(radius)
 
 
 def _contacts(position, radius, material):
@@ -198,10 +192,10 @@ def _check_overlap(contacts, gap):
         )
 
 
-def _check_one_piece(n_monomers, contacts):
-    pieces = int(connected_components(n_monomers, contacts).max()) + 1
+def _check_one_piece(position, radius, contacts):
+    pieces = int(connected_components(len(radius), contacts).max()) + 1
     if pieces > 1:
         raise InputError(
             f"The aggregate is in {pieces} pieces; it must be in one, where monomers touch if the gap between them "
-            f"is less than {GAP_TOLERANCE:g} equilibrium compressions."
+            f"is less than {GAP_TOLERANCE:g} equilibrium compressions.{far_apart(position, radius)}"
         )

@@ -8,6 +8,7 @@ import numpy as np
 from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.radii import RadiusDistribution, draw_radii
+from ratd.base.checks import GREATEST_SEED, is_number, is_whole, number_array
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import centre_of_mass
@@ -122,7 +123,7 @@ def grow_with_radii(type, radii, material, seed, *, migration="random"):
     material = get_material(material)
     migrations = TYPES[_check_type(type)]
     seed = check_seed(seed)
-    radius = np.array(radii, dtype=np.float64)
+    radius = number_array(radii, "radii")
     if radius.ndim != 1 or len(radius) < 2 or not np.all(np.isfinite(radius) & (radius > 0.0)):
         raise InputError("radii must be a list of at least two finite numbers above 0 (in m).")
     position = _place(radius, material, migrations, migration, seed_sequence(material.name, type, "radii", seed))
@@ -152,16 +153,13 @@ def _check_type(type):
 
 
 def check_seed(seed):
-    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
-        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
+    if not (is_whole(seed) and 0 <= seed <= GREATEST_SEED):
+        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0 and at most {GREATEST_SEED}.")
     return int(seed)
 
 
 def _check_a_eff(a_eff, type, distribution):
-    try:
-        value = float(a_eff)
-    except (TypeError, ValueError):
-        value = math.nan
+    value = float(a_eff) if is_number(a_eff) else math.nan
     low = smallest_a_eff(type, distribution)
     high = (MOST_MONOMERS * distribution.moment(3)) ** (1.0 / 3.0)
     if not low < value <= high:

@@ -6,6 +6,7 @@ from statistics import NormalDist
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 
@@ -49,8 +50,7 @@ class RadiusDistribution:
     def __post_init__(self):
         for name in ("median", "sigma_ln", "smallest", "largest"):
             value = getattr(self, name)
-            number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-            if not (number and value > 0.0):
+            if not (is_number(value) and value > 0.0):
                 raise InputError(f"{name} of the monomer radii is {value!r}; it must be a number above 0.")
         if not self.smallest < self.largest:
             raise InputError(

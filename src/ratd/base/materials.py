@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, fields
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.units import GPA, MJ_PER_M2, NM, PS
 
@@ -63,15 +64,15 @@ class Material:
             if field.name == "name":
                 continue
             value = getattr(self, field.name)
-            number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
             if field.name == "poisson_number":
-                allowed, good = "above 0 and at most 0.5", number and 0.0 < value <= 0.5
+                allowed, good = "above 0 and at most 0.5", lambda number: 0.0 < number <= 0.5
             elif field.name == "viscous_time":
-                allowed, good = "a number of at least 0", number and value >= 0.0
+                allowed, good = "a number of at least 0", lambda number: number >= 0.0
             else:
-                allowed, good = "a number above 0", number and value > 0.0
-            if not good:
+                allowed, good = "a number above 0", lambda number: number > 0.0
+            if not (is_number(value) and good(value)):
                 raise InputError(f"Material {self.name!r} has {field.name} = {value!r}; it must be {allowed}.")
+            object.__setattr__(self, field.name, float(value))  # numbers of numpy would stand in hashes and files
 
     @property
     def reduced_modulus(self):

@@ -5,6 +5,7 @@ import time as clock
 import numpy as np
 import xarray as xr
 
+from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.drives.free import rest
@@ -19,6 +20,7 @@ from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
+from ratd.pipeline.provenance import source_hash
 
 __all__ = ["columns", "evolve"]
 
@@ -131,13 +133,13 @@ def evolve(
     in_box = has_images(box)
     if in_box and drag:
         raise InputError("drag is for open space; in a periodic box leave it out.")
-    if not (_is_number(duration) and duration > 0):
+    if not (is_number(duration) and duration > 0):
         raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
-    if not (_is_number(drag) and drag >= 0):
+    if not (is_number(drag) and drag >= 0):
         raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
-    if not (_is_number(records) and records >= 1 and records == int(records)):
+    if not (is_number(records) and records >= 1 and records == int(records)):
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
-    if not (_is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
+    if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
     contacts = None if contacts is None else _contacts(contacts, len(radius))
     drive = squeezing() if in_box else rest(drag)
@@ -146,7 +148,9 @@ def evolve(
     settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
-    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given)
+    # a run that one source has begun is not gone on with by another
+    source = None if checkpoint is None else source_hash(modules=[__name__])
+    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given, source)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])
@@ -179,26 +183,20 @@ def evolve(
 
 def _arrays(position, radius, velocity, spin):
     """All as float64 arrays, checked."""
-    try:
-        radius = np.array(radius, dtype=np.float64)
-        vectors = [
-            None if array is None else np.array(array, dtype=np.float64, order="C")
-            for array in (position, velocity, spin)
-        ]
-    except (TypeError, ValueError):
-        raise InputError("position, radius, velocity and spin must be arrays of numbers.") from None
+    radius = number_array(radius, "radius")
+    given = {"position": (position, "m"), "velocity": (velocity, "m/s"), "spin": (spin, "rad/s")}
+    vectors = [None if array is None else number_array(array, name, unit) for name, (array, unit) in given.items()]
     if radius.ndim != 1 or len(radius) == 0 or not (np.isfinite(radius) & (radius > 0.0)).all():
         raise InputError(f"radius has the shape {radius.shape}; it must be (n,) numbers above 0, in m, n at least 1.")
-    for name, array in zip(("position", "velocity", "spin"), vectors, strict=True):
+    check_radii(radius)
+    for name, array in zip(given, vectors, strict=True):
         if array is not None and (array.shape != (len(radius), 3) or not np.isfinite(array).all()):
             raise InputError(f"{name} has the shape {array.shape}; it must be ({len(radius)}, 3) finite numbers.")
     if vectors[0] is None:
         raise InputError("position is None; it must be (n, 3) finite numbers in m.")
+    if hint := far_apart(vectors[0], radius):
+        raise InputError(f"position is in another unit than radius, it seems.{hint}")
     return vectors[0], radius, vectors[1], vectors[2]
-
-
-def _is_number(value):
-    return isinstance(value, int | float | np.number) and np.isfinite(value)
 
 
 def _contacts(contacts, n):

@@ -23,3 +23,4 @@ if (atDisruption >= 0) {
 }
 
 colourBy("fragment");
+setTimeout(standBack, 100); // k3d places the camera some milliseconds after this script

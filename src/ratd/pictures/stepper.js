@@ -40,6 +40,25 @@ function play() {
     player = setInterval(() => (step === last ? stop() : show(step + 1)), PAUSE);
 }
 
+// The angle of view is that from the lower to the upper edge: a window higher than wide is seen from farther away.
+function standBack() {
+    const target = element("canvasTarget");
+    const aspect = target.clientWidth / target.clientHeight;
+    if (aspect < 1) {
+        const [x, y, z, ...rest] = K3DInstance.getWorld().controls.getCameraArray();
+        K3DInstance.setCamera([x / aspect, y / aspect, z / aspect, ...rest]);
+    }
+}
+
+async function savePicture() {
+    const canvas = await K3DInstance.getScreenshot(1, true); // larger ones have smaller spheres
+    const link = document.createElement("a");
+    const name = document.title.replace(/[^\w.-]+/g, "_");
+    link.download = `${name}_${step + 1}.png`;
+    link.href = canvas.toDataURL("image/png");
+    link.click();
+}
+
 const playOrStop = () => (player === null ? play() : stop());
 
 function stepBy(key) {
@@ -64,6 +83,11 @@ element("play").addEventListener("click", () => {
     element("play").blur(); // space is heard by the page, not twice
     playOrStop();
 });
+element("picture").addEventListener("click", () => {
+    element("picture").blur();
+    savePicture();
+});
+setTimeout(standBack, 100); // k3d places the camera some milliseconds after this script
 document.querySelectorAll("[name=colour]").forEach((button) => {
     // a chosen button must not take the arrow keys to itself
     button.addEventListener("change", () => {

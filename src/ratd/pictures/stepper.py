@@ -24,6 +24,7 @@ OPENING = 30.0
 SPHERES = 1
 """Number of the spheres in the scene; k3d would take addresses in memory, which differ from run to run."""
 SCRIPT = Path(__file__).with_name("stepper.js")
+STYLE = Path(__file__).with_name("stepper.css")
 
 
 def scene(half_width, view=VIEW):
@@ -87,13 +88,16 @@ def finished_page(plot, panel, title, script):
     ----------
     plot : k3d.Plot
     panel : str
-        HTML with what `stepper.js` asks for: play, step, of, and a radio button and a legend for each way of colours.
+        HTML with what `stepper.js` asks for: play, step, of, picture, and a radio button and a legend for
+        each way of colours.
     title : str
     script : str
         The page's own script, which has a function `tell(step)` and ends by choosing colours.
     """
     page = plot.get_snapshot(additional_js_code=SCRIPT.read_text(encoding="utf-8") + script)
     # k3d's title holds the time, and its page has no room for controls of our own
-    page = re.sub("<title>.*?</title>", lambda _: f"<title>{escape(title)}</title>", page, count=1, flags=re.DOTALL)
+    head = f'<title>{escape(title)}</title>\n    <meta name="viewport" content="width=device-width, initial-scale=1">'
+    page = re.sub("<title>.*?</title>", lambda _: head, page, count=1, flags=re.DOTALL)
     canvas = '<div id="canvasTarget"></div>'
-    return page.replace(canvas, panel + canvas, 1)
+    style = f"<style>\n{STYLE.read_text(encoding='utf-8')}</style>\n"
+    return page.replace(canvas, style + panel + canvas, 1)

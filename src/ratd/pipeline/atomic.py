@@ -1,10 +1,15 @@
 """Files that are complete or not there: written under another name, flushed to the disk, and only then renamed."""
 
+import errno
 import os
+import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ratd.base.errors import FileError
+
+FULL = 2**19
+"""A disk with less room than this [bytes] is full, whatever the library says that failed to write."""
 
 
 @contextmanager
@@ -44,10 +49,18 @@ def atomic(path):
     except OSError as error:
         if isinstance(error, FileError):
             raise
-        raise FileError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise FileError(f"{path}: cannot be written ({reason(error, path)})") from error
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def reason(error, path):
+    """Why a file cannot be written: the words of an error, or those for a full disk, which libraries do not have."""
+    with suppress(OSError):
+        if shutil.disk_usage(Path(path).parent).free < FULL:
+            return os.strerror(errno.ENOSPC)
+    return getattr(error, "strerror", None) or str(error)
 
 
 def _remove_left_over(path):

@@ -21,6 +21,9 @@ _Validator = jsonschema.validators.extend(
     ),
 )
 
+OWN_FOLDERS = ("benchmarks", "config", "docs", "examples", "profiles", "src", "tests", "workflow")
+"""Folders of the project, in which no results may lie."""
+
 _MATERIAL_KEYS = {
     "surface_energy_mJ_m2": ("surface_energy", MJ_PER_M2),
     "youngs_modulus_GPa": ("youngs_modulus", GPA),
@@ -30,6 +33,23 @@ _MATERIAL_KEYS = {
     "viscous_time_ps": ("viscous_time", PS),
 }
 """Key in materials.yaml -> attribute of `Material` and its unit in SI."""
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which no key stands twice in one mapping."""
+
+    def construct_mapping(self, node, deep=False):
+        known = set()
+        for key, _ in node.value:
+            # keys that are merged in with << may be given again
+            if key.tag != "tag:yaml.org,2002:merge":
+                name = self.construct_object(key, deep=True)
+                if name in known:
+                    raise yaml.constructor.ConstructorError(
+                        None, None, f"the key {name!r} stands in one mapping twice", key.start_mark
+                    )
+                known.add(name)
+        return super().construct_mapping(node, deep)
 
 
 def read_yaml(path):
@@ -46,16 +66,19 @@ def read_yaml(path):
     Raises
     ------
     InputError
-        One sentence with the file, and the line where it is not YAML.
+        One sentence with the file, and the line where it is not YAML, or where a key stands for the second time.
     """
     try:
-        return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+        return yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         place = getattr(error, "problem_mark", None)
         where = f"line {place.line + 1}: " if place else ""
-        raise InputError(f"{path}: {where}is not YAML ({getattr(error, 'problem', error)})") from error
+        problem = getattr(error, "problem", None) or error
+        if isinstance(error, yaml.constructor.ConstructorError):
+            raise InputError(f"{path}: {where}{problem}; allowed: each key once") from error
+        raise InputError(f"{path}: {where}is not YAML ({problem})") from error
 
 
 def merge(base, over):
@@ -93,22 +116,25 @@ def check_layout(content, layout, where, inside=()):
     Raises
     ------
     InputError
-        One sentence with the key, its value and what is allowed.
+        One sentence for each mistake, with the key, its value and what is allowed.
     """
-    errors = _Validator(layout).iter_errors(content)
-    for error in sorted(errors, key=lambda error: [str(part) for part in error.absolute_path]):
-        raise InputError(f"{where}: {_sentence(error, layout, inside)}")
+    errors = sorted(_Validator(layout).iter_errors(content), key=lambda error: [str(p) for p in error.absolute_path])
+    sentences = dict.fromkeys(f"{where}: {_sentence(error, layout, inside)}" for error in errors)
+    if sentences:
+        raise InputError("\n".join(sentences))
 
 
 def _sentence(error, layout, inside):
     """What is wrong, from an error of jsonschema."""
     key = _dotted((*inside, *error.absolute_path))
     if error.validator == "additionalProperties":
-        unknown = sorted(set(error.instance) - set(error.schema["properties"]), key=str)[0]
+        unknown = sorted(set(error.instance) - set(error.schema["properties"]), key=str)
         place = f" in {key}" if key else ""
-        return f"the key {unknown!r}{place} is unknown; allowed: {', '.join(error.schema['properties'])}"
+        named = f"key {unknown[0]!r}{place} is" if len(unknown) == 1 else f"keys {', '.join(unknown)}{place} are"
+        return f"the {named} unknown; allowed: {', '.join(error.schema['properties'])}"
     if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in error.instance)
+        # jsonschema has one error for each missing key, and says which only in its words
+        missing = next(name for name in error.validator_value if error.message.startswith(f"{name!r} "))
         part = error.schema.get("properties", {}).get(missing, error.schema)
         if "$ref" in part:
             part = layout["$defs"][part["$ref"].rpartition("/")[2]]
@@ -224,7 +250,7 @@ def section(config, name, schemas="config/schema"):
     Raises
     ------
     InputError
-        One sentence that names the first key that is wrong, and what is allowed.
+        One sentence for each key that is wrong, and what is allowed.
     """
     schemas = Path(schemas)
     layout = read_yaml(schemas / "config.schema.yaml")
@@ -234,9 +260,67 @@ def section(config, name, schemas="config/schema"):
         raise InputError(f"config: the key {name} is missing; allowed: {layout['properties'][name]['description']}")
     own = config[name]
     check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,))
+    check_results_folder(config["results"])
     shared = {key: value for key, value in config.items() if key in layout["required"]}
     shared["results"] = shared["results"].rstrip("/") or "/"
     return shared, own, read_materials(config["materials_file"], read_yaml(schemas / "materials.schema.yaml"))
+
+
+def base(name, schemas="config/schema"):
+    """Keys of one experiment in the file that comes with ratd, beside the folder of the schemas."""
+    return read_yaml(Path(schemas).parent / f"{name}.yaml")[name]
+
+
+def with_parts(own, parts):
+    """Keys of an experiment in which null for a whole part stands for null for each of its entries.
+
+    Parameters
+    ----------
+    own : dict
+    parts : dict of str to sequence of str
+        Such as ``figures`` -> the names of all figures.
+
+    Returns
+    -------
+    dict
+    """
+    return own | {name: dict.fromkeys(entries) for name, entries in parts.items() if own[name] is None}
+
+
+def left_out(where, mistake):
+    """What to say of a part of a base file that names what the config does not have.
+
+    Parameters
+    ----------
+    where : str
+        The part.
+    mistake : str
+        What would be said were the part the user's own: key, value and what is allowed.
+
+    Returns
+    -------
+    str
+    """
+    return f"config: {where} is left out, since the config has no such grains ({mistake.partition(';')[0].lstrip('.')})"
+
+
+def check_results_folder(results, project="."):
+    """Raise InputError unless a folder of results is one of its own: whatever lies in it may be made anew.
+
+    Parameters
+    ----------
+    results : str
+    project : path-like, optional
+        Folder of the project, whose own folders hold no results.
+    """
+    project = Path(project).resolve()
+    folder = (project / results).resolve()
+    inside = folder.relative_to(project).parts[:1] if folder.is_relative_to(project) else ()
+    if project.is_relative_to(folder) or set(inside) & set(OWN_FOLDERS) or inside and inside[0].startswith("."):
+        raise InputError(
+            f"config: results is {results!r}; allowed: the path of a folder that holds nothing else, such as "
+            f"results/mine, and neither {', '.join(OWN_FOLDERS)} nor what this project lies in"
+        )
 
 
 def _check_finite(value, path):

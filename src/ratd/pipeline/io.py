@@ -6,19 +6,21 @@ own name. It holds no time, host or path, so the same content gives the same byt
 """
 
 import hashlib
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from ratd import __version__
 from ratd.base.errors import FileError, InputError
 from ratd.pipeline import kinds
-from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.atomic import atomic, reason, write_text
+from ratd.pipeline.places import contradiction
 
 __all__ = ["atomic", "read", "read_made_with", "write", "write_text"]
 
 CONVENTIONS = "CF-1.11"
+REMEDY = "remove it, and the same command makes it anew"
 COMPRESSED_FROM = 512
 """Arrays of this many elements or more are compressed; for fewer the bookkeeping takes more room than it saves."""
 
@@ -44,11 +46,13 @@ def write(path, dataset, kind):
     """
     path = Path(path)
     dataset = _described(dataset, kind, str(path))
+    if wrong := contradiction(dataset, kinds.kind_of(kind).places, path):
+        raise InputError(f"{path}: {wrong}")
     with atomic(path) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset, kind))
         except RuntimeError as error:  # of the HDF5 library, e.g. on a full disk
-            raise FileError(f"{path}: cannot be written ({error})") from error
+            raise FileError(f"{path}: cannot be written ({reason(error, path)})") from error
         try:
             intact = read(temporary, kind).identical(dataset)
         except FileError as error:
@@ -78,7 +82,9 @@ def _described(dataset, kind, where):
     attributes = {
         "Conventions": CONVENTIONS,
         "title": layout.title,
-        "source": f"ratd {metadata.version('ratd')}",
+        "source": f"ratd {__version__}",
+        # without a time: the same content gives the same bytes
+        "history": f"made by ratd {__version__} from the settings, source and inputs named here",
         "file_kind": kind,
         "file_format": kinds.FORMAT,
     }
@@ -165,7 +171,7 @@ def read(path, kind):
         with xr.open_dataset(path, engine="netcdf4", decode_times=False, mask_and_scale=False) as opened:
             dataset = opened.load()
     except Exception as error:  # a damaged file can make the libraries raise almost anything
-        raise FileError(f"{path}: is damaged or no netCDF file ({error})") from error
+        raise FileError(f"{path}: is damaged or no netCDF file ({error}): {REMEDY}") from error
     found = dataset.attrs.get("file_kind")
     if found is None:
         raise FileError(f"{path}: was not written by ratd, a file of {kind} is needed")
@@ -186,7 +192,9 @@ def read(path, kind):
     dataset.encoding = {}
     kinds.check(dataset, kind, str(path))
     if dataset.attrs.get("content_hash") != _content_hash(dataset):
-        raise FileError(f"{path}: is damaged (its values do not agree with its content_hash)")
+        raise FileError(f"{path}: is damaged (its values do not agree with its content_hash): {REMEDY}")
+    if wrong := contradiction(dataset, kinds.kind_of(kind).places, path):
+        raise FileError(f"{path}: {wrong}: {REMEDY}")
     return dataset
 
 

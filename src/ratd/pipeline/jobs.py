@@ -8,7 +8,7 @@ import fcntl
 import logging
 import sys
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -16,9 +16,10 @@ import pandas as pd
 import xarray as xr
 
 from ratd.base.errors import FileError, InputError
-from ratd.pipeline import io
+from ratd.pipeline import first_error, io
 from ratd.pipeline.kinds import fingerprint
 from ratd.pipeline.partial import Block, Pieces, locked
+from ratd.pipeline.places import seeds_of
 from ratd.pipeline.provenance import provenance, source_hash
 
 PROGRESS_INTERVAL = 10.0
@@ -52,6 +53,17 @@ def task(script, function, *writes):
         "writes": list(writes),
         "hash": source_hash(script, modules=[module], extra=layout),
     }
+
+
+class _LogFile(logging.FileHandler):
+    """A log file that is silent where it cannot be written: the job has its own word on a full disk."""
+
+    def emit(self, record):
+        with suppress(OSError):
+            super().emit(record)
+
+    def handleError(self, record):
+        pass
 
 
 class Job:
@@ -105,8 +117,9 @@ class Job:
         self.log.propagate = False
         words = [f"{word} nm" if name == "size" else word for name, word in self.wildcards.items()]
         label = " ".join([self._snakemake.rule, *words]).replace("%", "%%")
+        self._label = label
         for handler, form in (
-            (logging.FileHandler(self._snakemake.log[0]), "%(asctime)s %(message)s"),
+            (_LogFile(self._snakemake.log[0], delay=True), "%(asctime)s %(message)s"),
             (logging.StreamHandler(sys.stderr), f"{label}: %(message)s"),
         ):
             handler.setFormatter(logging.Formatter(form))
@@ -117,10 +130,12 @@ class Job:
             self._fail(error)
         elif error is not None and not isinstance(error, SystemExit):
             self.log.error("failed", exc_info=(kind, error, traceback))
+            first_error.keep(f"{self._label}: {kind.__name__}: {error}")
         return False
 
     def _fail(self, error):
         self.log.error(f"error: {error}")
+        first_error.keep(f"{self._label}: error: {error}")
         sys.exit(1)
 
     def write(self, name, content):
@@ -248,7 +263,8 @@ class Job:
                     )
             except BaseException:
                 for own in pieces.values():
-                    own.write()
+                    with suppress(FileError):  # the first error is the one to tell
+                        own.write()
                 raise
             for own in pieces.values():
                 own.join()
@@ -281,12 +297,6 @@ class Job:
                 self.log.info(f"{name}: {tell()}")
 
         return say
-
-
-def seeds_of(block):
-    """Seeds of a block, a range, from its name such as ``"0-9"``."""
-    first, last = (int(seed) for seed in block.split("-"))
-    return range(first, last + 1)
 
 
 def duration(seconds):

@@ -123,6 +123,8 @@ class Kind:
         Variables along `ROW` that are attributes of the row of a grain, not variables of it.
     references : str
         Becomes the global attribute ``references``; empty for none.
+    places : tuple of str
+        Ends of the paths of its files, whose fields they must agree with, see `ratd.pipeline.places`.
     """
 
     title: str
@@ -131,6 +133,7 @@ class Kind:
     ragged: tuple = ()
     of_row: tuple = ()
     references: str = ""
+    places: tuple = ()
 
 
 def register(name, kind):

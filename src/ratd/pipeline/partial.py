@@ -9,6 +9,7 @@ This module decides no number: it is left out of all source hashes (see `ratd.pi
 
 import fcntl
 import os
+import re
 import shutil
 import time
 from contextlib import contextmanager, suppress
@@ -20,6 +21,7 @@ from ratd.base.materials import Material
 from ratd.pipeline import blocks, io
 from ratd.pipeline.provenance import settings_hash
 
+_OWN_NAMES = r"lock|seed_\d+(\.nc|\.[0-9a-f]+\.checkpoint)(\.\d+\.tmp)?"
 WORK_BETWEEN_PIECES = 20
 """Work that a kill may cost, over the time that writing a piece takes: short grains share one."""
 
@@ -165,6 +167,12 @@ def locked(path, log):
         yield
 
 
+def _is_own(folder):
+    """Whether a folder holds what this module writes, and nothing else."""
+    names = [path.name for path in folder.iterdir()] if folder.is_dir() and not folder.is_symlink() else []
+    return "lock" in names and all(re.fullmatch(_OWN_NAMES, name) for name in names)
+
+
 def tidy(results):
     """Remove the folders of partial results whose files are finished, and that no process is at work in.
 
@@ -173,8 +181,8 @@ def tidy(results):
     results : path-like
         Folder of all results.
     """
-    for folder in sorted(Path(results).rglob("*.partial")):
-        if not folder.with_suffix("").is_file():
+    for folder in sorted(Path(results).rglob("*.nc.partial")):
+        if not folder.with_suffix("").is_file() or not _is_own(folder):
             continue
         with open(folder / "lock", "a") as handle, suppress(BlockingIOError):
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

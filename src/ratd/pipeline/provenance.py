@@ -20,14 +20,15 @@ from importlib import metadata
 from io import StringIO
 from pathlib import Path
 
+from ratd import __version__
 from ratd.base.errors import InputError
 
 PLUMBING = ("ratd", "ratd.pipeline")
 """The package itself, which loads what is asked for, and all that carries numbers from a file to a function and back:
 outside every source hash, the second with all its modules."""
 
-NUMERICAL_PACKAGES = ("ratd", "numpy", "numba", "pandas", "xarray", "netCDF4")
-"""Packages whose versions are written into every file."""
+NUMERICAL_PACKAGES = ("numpy", "numba", "pandas", "xarray", "netCDF4")
+"""Packages whose versions are written into every file, next to that of ratd."""
 
 _ROOT = Path(__file__).parent.parent
 
@@ -201,7 +202,7 @@ def _texts(modules, files):
 
 def _beside(path):
     """Files of other types that have the name of a module and lie beside it: they belong to it."""
-    return [other for other in sorted(path.parent.glob(f"{path.stem}.*")) if other.suffix in (".html", ".js")]
+    return [other for other in sorted(path.parent.glob(f"{path.stem}.*")) if other.suffix in (".html", ".js", ".css")]
 
 
 def source_hash(script=None, modules=(), extra=(), root=_ROOT):
@@ -301,9 +302,9 @@ def versions():
     Returns
     -------
     str
-        ``"ratd 0.1.0, numpy 2.4.6, ..."``.
+        ``"ratd 1.0.0, numpy 2.4.6, ..."``.
     """
-    return ", ".join(f"{name} {metadata.version(name)}" for name in NUMERICAL_PACKAGES)
+    return ", ".join([f"ratd {__version__}", *(f"{name} {metadata.version(name)}" for name in NUMERICAL_PACKAGES)])
 
 
 def provenance(code, settings, inputs=()):

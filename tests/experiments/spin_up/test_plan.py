@@ -13,10 +13,14 @@ from ratd.pipeline import config as configs
 from ratd.pipeline.config import merge
 from tiny_pipeline import ROOT
 
+PARTS = ("materials", "types", "sizes_nm", "seeds", "block_size", "small_grains", "growth", "drives", "run", "literal")
+PARTS += ("snapshots", "ensemble", "figures")
 PACE = {"angular_acceleration": 1e15, "timestep_factor": 0.1}
 """Of a run of the calibration."""
 DEFAULT, QUICK = (ROOT / "config" / "config.yaml", ROOT / "config" / "spin_up.yaml"), ROOT / "config" / "quick.yaml"
 SHARED = ("results", "materials_file")
+CELL = {"material": "q-S", "size_nm": 50, "seed": 0}
+SMALL = CELL | {"type": "BA"}
 
 
 @pytest.fixture(autouse=True)
@@ -81,12 +85,15 @@ def test_quick_is_three_of_each():
         ({"seeds": {"fewer": [{"drives": ["literal"], "number": 1}]}}, "seeds.fewer[0].drives[0]", "prescribed"),
         ({"seeds": {"fewer": [{"number": 0}]}, "snapshots": {"grains": []}}, "fewer leaves no grain", "at least one"),
         (
-            {"seeds": {"fewer": [{"types": ["BAM2"], "number": 0}]}, "snapshots": {"grains": []}},
+            {
+                "seeds": {"fewer": [{"types": ["BAM2"], "number": 0}]},
+                "figures": {"figure4": {"size_nm": 50}, "figure5": None},
+            },
             "figures.figure4 is a cell that seeds.fewer leaves out",
             "or null",
         ),
         (
-            {"seeds": {"fewer": [{"sizes_nm": [500], "number": 0}]}},
+            {"seeds": {"fewer": [{"sizes_nm": [50], "number": 0}]}, "snapshots": {"grains": [SMALL]}, "figures": None},
             "snapshots.grains[0].seed is 0",
             "seeds.fewer leaves the cell out",
         ),
@@ -124,7 +131,16 @@ def test_quick_is_three_of_each():
         ),
         ({"literal": {"stretch": 1e-14}, "drives": ["literal"]}, "for the drive literal", "null for stretch"),
         ({"growth": {"largest_nm": 5}}, "growth", "smallest must be below largest"),
-        ({"snapshots": {"grains": [{"material": "q-S"}]}}, "snapshots.grains[0].type is missing", "BA, BAM1"),
+        ({"snapshots": {"grains": [CELL]}}, "snapshots.grains[0].type is missing", "BA, BAM1"),
+        ({"sizes_nm": [50, 50.0000000000001]}, "sizes_nm[1] is 50.0000000000001, which is the size 50", "different"),
+        ({"seeds": {"first": 2**31}}, "seeds.first is 2147483648", "at most 2147483647"),
+        ({"seeds": {"number": 10**6}}, "seeds.number is 1000000", "at most 100000"),
+        ({"results": "/"}, "results is '/'", "the path of a folder"),
+        ({"results": "."}, "results is '.'", "the path of a folder"),
+        ({"results": ".."}, "results is '..'", "the path of a folder"),
+        ({"results": "results/../src"}, "results is 'results/../src'", "the path of a folder"),
+        ({"results": "docs/reproduction"}, "results is 'docs/reproduction'", "the path of a folder"),
+        ({"results": ".snakemake"}, "results is '.snakemake'", "the path of a folder"),
         (
             {"snapshots": {"grains": [{"material": "q-S", "type": "BA", "size_nm": 50, "seed": 30}]}},
             "snapshots.grains[0].seed is 30",
@@ -183,6 +199,47 @@ def test_what_is_wrong_is_named_in_one_sentence(changes, key, allowed):
     message = str(error.value)
     assert key in message and allowed in message
     assert "\n" not in message
+
+
+def test_all_mistakes_are_named_at_once_a_line_each():
+    with pytest.raises(InputError) as error:
+        with_changes({"block_size": 0, "typos": 1, "seed": 2, "run": {"epsilon": 5}})
+    assert str(error.value).splitlines() == [
+        "config: the keys seed, typos in spin_up are unknown; allowed: " + ", ".join(PARTS),
+        "config: spin_up.block_size is 0; allowed: a whole number of 1 or more",
+        *[line for line in str(error.value).splitlines() if line.startswith("config: spin_up.run.epsilon is 5; ")],
+    ]
+    with pytest.raises(InputError) as error:
+        with_changes({"materials": ["x-S", "q-S"], "sizes_nm": [5, 50], "figures": {"figure4": {"size_nm": 75}}})
+    keys = [line.split(" is ")[0] for line in str(error.value).splitlines()]
+    beginnings = ["materials[0]", "sizes_nm[0]", "sizes_nm[0]", "sizes_nm[0]", "figures.figure4.size_nm"]
+    assert keys == [f"config: spin_up.{key}" for key in beginnings]
+
+
+def test_a_config_says_only_what_it_wants():
+    """Of the file that comes with ratd, what names other cells is left out, and said."""
+    plan = with_changes({"materials": ["co-S"], "sizes_nm": [100], "seeds": {"number": 5}})
+    assert plan.figures == ["figure2", "figure7", "figure8"] and plan.common_figures == ["figure10"]
+    assert plan.snapshot_grains == [] and plan.parameter_ways == [] and plan.calibration_labels == []
+    left_out = {note.split(" is left out")[0] for note in plan.notes}
+    gone = ("figure1", "figure4", "figure5", "figure6", "figure9", "calibration", "formulae")
+    assert left_out == {"config: spin_up.snapshots.grains[0]"} | {f"config: spin_up.figures.{name}" for name in gone}
+    assert "(figures.figure4.material is 'q-S')" in plan.notes[2]
+    # what the user's own file names is not
+    with pytest.raises(InputError, match="figures.figure4.material is 'q-S'; allowed: one of the materials, co-S"):
+        with_changes({"materials": ["co-S"], "figures": {"figure4": {"size_nm": 50}}})
+    assert load(*DEFAULT).notes == load(*DEFAULT, QUICK).notes == []
+
+
+def test_null_for_all_figures_and_snapshots():
+    plan = with_changes({"figures": None, "snapshots": None})
+    assert plan.figures == ["figure2", "figure7"] and plan.common_figures == []
+    assert plan.spin_up("prescribed", "q-S", "BAM2", "500", "0-9")["snapshot_every"] == 0 and plan.notes == []
+
+
+def test_sizes_are_the_same_when_their_labels_are():
+    plan = with_changes({"sizes_nm": [50.0, 100], "figures": {"figure6": {"sizes_nm": [50, 100.0]}}})
+    assert plan.config["figures"]["figure6"] is not None
 
 
 def test_missing_key_is_named():
@@ -404,6 +461,7 @@ def test_sizes_stand_in_names_without_needless_digits(size, label):
     assert size_label(size) == label
 
 
+ICE = "surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000"
 MATERIALS_OF_FIGURES = ("a-C", "q-S", "co-S")
 
 
@@ -414,7 +472,7 @@ def materials_file(tmp_path, text):
 
 
 def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
-    snow = "snow: {surface_energy_mJ_m2: 100, youngs_modulus_GPa: 7, poisson_number: 0.25, density_kg_m3: 1000}\n"
+    snow = f"snow: {{{ICE}}}\n"
     half = "half: {mix: {snow: 0.5, q-S: 0.5}}\n"
     plan = with_changes(materials_file(tmp_path, snow + half) | {"materials": ["snow", "half", *MATERIALS_OF_FIGURES]})
     assert plan.material("snow")["youngs_modulus"] == pytest.approx(7e9)
@@ -428,11 +486,13 @@ def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
     [
         ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
         ("a/b: {mix: {a-C: 1.0}}\n", "'a/b'; allowed: a name of letters"),
-        ("snow: {density_kg_m3: 1000}\n", "snow.surface_energy_mJ_m2 is missing; allowed: a number"),
+        ("snow: {density_kg_m3: 1000, poisson_number: 0.2, youngs_modulus_GPa: 1}\n", "snow.surface_energy_mJ_m2 is"),
+        ("sn.ow: {mix: {a-C: 1.0}}\n", "'sn.ow'; allowed: a name of letters, digits and the signs _ + -"),
+        ("snow: {mix: {a-C: 1.0}}\nsnow: {mix: {q-S: 1.0}}\n", "line 2: the key 'snow' stands in one mapping twice"),
         ("snow: {mix: {a-C: 0.4}}\n", "add up to 1"),
         ("snow: {mix: {b-C: 1.0}}\n", "b-C"),
         ("snow: {mix: {a-C: 1.0}, density_kg_m3: 5}\n", "with the one key mix"),
-        ("snow: {gamma: 1}\n", "the key 'gamma' in snow is unknown"),
+        (f"snow: {{{ICE}, gamma: 1}}\n", "the key 'gamma' in snow is unknown"),
         ("snow: 5\n", "snow is 5; allowed: a mapping"),
     ],
 )
@@ -441,3 +501,9 @@ def test_what_is_wrong_with_a_material_is_named_with_the_file(tmp_path, text, sa
         with_changes(materials_file(tmp_path, text))
     assert said in str(error.value) and "materials.yaml" in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_time_limits_grow_with_size_grains_and_tries():
+    minutes = load(*DEFAULT).spin_up_minutes
+    assert 20 * 10 < minutes("550", "0-9") < 2 * 1440
+    assert minutes("50", "0-29") < 60 < minutes("350", "0-9") < minutes("550", "0-9") < minutes("550", "0-9", attempt=2)

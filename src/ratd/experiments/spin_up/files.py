@@ -152,9 +152,32 @@ def _register(name, title, variables, **options):
 
 
 _RUN = {"attributes": RUN_SETTINGS, "of_row": tuple(RUN_VALUES)}
-_register("spinup", "Spin-up of grains", _SPINUP, ragged=_SPINUP_RAGGED, **_RUN)
-_register("disruption", "Disruption of grains", _DISRUPTION, **_RUN)
-_register("table", "All grains of an ensemble", _TABLE)
+_register(
+    "spinup",
+    "Spin-up of grains",
+    _SPINUP,
+    ragged=_SPINUP_RAGGED,
+    places=("spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc",),
+    **_RUN,
+)
+_register(
+    "disruption",
+    "Disruption of grains",
+    _DISRUPTION,
+    places=(
+        "disruption/{drive}/{material}/{type}/{size}nm.nc",
+        "parameters/{drive}/{type}/{size}nm/*.nc",
+        "formulae/*/{type}/{size}nm.nc",
+    ),
+    **_RUN,
+)
+_register("table", "All grains of an ensemble", _TABLE, places=("ensemble/{drive}/grains.nc",))
 _register("cells", "Grains of an ensemble, averaged per material, type and size", _CELLS)
-_register("fit", "Fit of Eq. 33 to an ensemble, beside Table 3 of the paper", _FIT, attributes=("drive",))
+_register(
+    "fit",
+    "Fit of Eq. 33 to an ensemble, beside Table 3 of the paper",
+    _FIT,
+    attributes=("drive",),
+    places=("ensemble/{drive}/table3.nc",),
+)
 _register("fragments", "Fragments that leave grains", _FRAGMENTS, attributes=("drive",), ragged=_FRAGMENTS_RAGGED)

@@ -263,5 +263,10 @@ def table(files, settings, say):
 
 register(
     "firm_bounds",
-    Kind("Bounds from cuts whose contacts hold sideways and push", entries(FIRM_BOUND_COLUMNS), references=PAPER),
+    Kind(
+        "Bounds from cuts whose contacts hold sideways and push",
+        entries(FIRM_BOUND_COLUMNS),
+        references=PAPER,
+        places=("firm_bounds/{material}/{type}.nc",),
+    ),
 )

@@ -5,7 +5,7 @@ from ratd.aggregates.growth import grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.materials import Material
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.pipeline.jobs import seeds_of
+from ratd.pipeline.places import seeds_of
 
 __all__ = ["block", "grown"]
 

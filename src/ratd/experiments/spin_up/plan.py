@@ -6,15 +6,41 @@ from ratd.experiments.spin_up.seeds import cell_of, size_label
 from ratd.experiments.spin_up.settings import Settings
 from ratd.pipeline import config as configs
 
-__all__ = ["COMMON_FIGURES", "FIGURES", "Plan", "check", "load"]
+__all__ = ["COMMON_FIGURES", "FIGURES", "Plan", "check", "load", "report_labels"]
 
 FIGURES = ("figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "figure9")
 """Figures that are drawn for each drive."""
 COMMON_FIGURES = ("figure1", "figure10", "calibration", "formulae")
 """Figures that have no drive to choose."""
+ALL_FIGURES = ("figure1", "figure4", "figure5", "figure6", "figure8", "figure9", "figure10", "calibration", "formulae")
+"""Keys of `figures`; figures 2 and 7 show all that there is."""
+TITLES = {
+    "figure1": "grains as grown",
+    "figure2": "numbers, porosity, fractal dimension",
+    "figure4": "one cell coming apart",
+    "figure5": "one grain coming apart",
+    "figure6": "shapes of the grains",
+    "figure7": "angular velocity of disruption",
+    "figure8": "tensile strengths",
+    "figure9": "rolling displacement and viscous time",
+    "figure10": "pairs that part",
+    "calibration": "calibration of the drive literal",
+    "formulae": "single formulae as printed",
+}
+"""What a figure shows, in the list of the report."""
 
 GRAINS = "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
 RUNS = "<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+
+
+def report_labels(name, form):
+    """Labels of a figure in the report, whose list is sorted by them as text, dict of str."""
+    number = name.removeprefix("figure")
+    return {
+        "figure": f"{number:>2}" if number.isdigit() else "study",
+        "shows": TITLES[name],
+        "format": form.upper(),
+    } | ({"drive": "{drive}"} if name in FIGURES else {})
 
 
 def load(*paths, schemas="config/schema"):
@@ -39,10 +65,11 @@ def check(config, schemas="config/schema"):
     Raises
     ------
     InputError
-        One sentence that names the first key that is wrong, and what is allowed.
+        One sentence for each key that is wrong, with what is allowed.
     """
     shared, own, materials = configs.section(config, "spin_up", schemas)
-    plan = Plan(own, materials, shared["results"])
+    plan = Plan(configs.with_parts(own, {"figures": ALL_FIGURES}), materials, shared["results"])
+    plan.notes = plan_check.leave_out_absent(plan, configs.base("spin_up", schemas))
     plan_check.check(plan, shared["materials_file"])
     return plan
 
@@ -58,11 +85,17 @@ class Plan(Settings):
         Table 2 and the materials of the user.
     results : str
         Folder of all results.
+
+    Attributes
+    ----------
+    notes : list of str
+        What was left out because the config has no such cells.
     """
 
     def __init__(self, config, materials, results):
         super().__init__(config, materials)
         self.results = results
+        self.notes = []
 
     @property
     def figures(self):

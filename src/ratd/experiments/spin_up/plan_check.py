@@ -4,17 +4,19 @@ import math
 
 from ratd.aggregates.growth import MOST_MONOMERS, smallest_a_eff
 from ratd.aggregates.radii import RadiusDistribution
+from ratd.base.checks import GREATEST_SEED
 from ratd.base.errors import InputError
 from ratd.base.units import NM
-from ratd.experiments.spin_up.seeds import cell_of
+from ratd.experiments.spin_up.seeds import cell_of, size_label
+from ratd.pipeline.config import left_out
 
-__all__ = ["check"]
+__all__ = ["check", "leave_out_absent"]
 
 _WHERE = "config: spin_up"
 
 
 def check(plan, materials_file):
-    """Raise InputError, with one sentence, for the first key of a plan that is wrong.
+    """Raise InputError, with a sentence for each key of a plan that is wrong.
 
     Parameters
     ----------
@@ -22,167 +24,222 @@ def check(plan, materials_file):
     materials_file : str
         Where a user adds materials, for the message.
     """
+    mistakes = [
+        *_materials(plan, materials_file),
+        *_sizes(plan),
+        *_paces(plan),
+        *_seeds(plan),
+        *_fewer(plan),
+        *(mistake for k in range(len(plan.snapshot_grains)) for mistake in _snapshot(plan, k)),
+        *(mistake for name in plan.config["figures"] for mistake in _figure(plan, name)),
+    ]
+    if mistakes:
+        raise InputError("\n".join(f"{_WHERE}{mistake}" for mistake in mistakes))
+
+
+def leave_out_absent(plan, base):
+    """Leave out figures and snapshots that stand in the base file and name cells which the config does not have.
+
+    Parameters
+    ----------
+    plan : ratd.experiments.spin_up.plan.Plan
+        Its config is changed.
+    base : dict
+        Keys of the spin-up in the file that comes with ratd.
+
+    Returns
+    -------
+    list of str
+        A sentence for each part that is left out.
+    """
+    config = plan.config
+    absent = [
+        k
+        for k, grain in enumerate(plan.snapshot_grains)
+        if grain in base["snapshots"]["grains"] and any(_snapshot(plan, k))
+    ]
+    notes = [left_out(f"spin_up.snapshots.grains[{k}]", next(_snapshot(plan, k))) for k in absent]
+    if absent:
+        grains = [grain for k, grain in enumerate(plan.snapshot_grains) if k not in absent]
+        config["snapshots"] = config["snapshots"] | {"grains": grains}
+    for name, own in config["figures"].items():
+        mistake = next(_figure(plan, name), None)
+        if mistake and own == base["figures"].get(name):
+            config["figures"] = config["figures"] | {name: None}
+            notes.append(left_out(f"spin_up.figures.{name}", mistake))
+    return notes
+
+
+def _materials(plan, materials_file):
     for k, name in enumerate(plan.config["materials"]):
         if name not in plan.materials:
-            raise InputError(
-                f"{_WHERE}.materials[{k}] is {name!r}; "
-                f"allowed: {', '.join(plan.materials)}, or a material added to {materials_file}"
-            )
-    _check_sizes(plan)
-    _check_paces(plan)
-    _check_fewer(plan)
-    for k, grain in enumerate(plan.config["snapshots"]["grains"]):
-        _find_cell(plan, grain, f"snapshots.grains[{k}]")
-        _find_seed(grain["seed"], plan.seeds_of(cell_of(grain)), f"snapshots.grains[{k}].seed")
-    for name, check_own in _FIGURES.items():
-        own = plan.config["figures"][name]
-        if own is not None:
-            check_own(plan, own, f"figures.{name}")
+            known = f"{', '.join(plan.materials)}, or a material added to {materials_file}"
+            yield f".materials[{k}] is {name!r}; allowed: {known}"
 
 
-def _check_sizes(plan):
+def _sizes(plan):
     try:
         radii = RadiusDistribution(**plan.radii)
     except InputError as error:
-        raise InputError(f"{_WHERE}.growth: {error}") from error
+        yield f".growth: {error}"
+        return
     largest = (MOST_MONOMERS * radii.moment(3)) ** (1 / 3) / NM
-    for k, size in enumerate(plan.config["sizes_nm"]):
-        where = f"{_WHERE}.sizes_nm[{k}] is {size!r}"
+    sizes = plan.config["sizes_nm"]
+    labels = list(map(size_label, sizes))
+    for k, size in enumerate(sizes):
+        where = f".sizes_nm[{k}] is {size!r}"
+        if labels[k] in labels[:k]:
+            yield f"{where}, which is the size {labels[k]} nm again; allowed: different sizes"
         if size > largest:
-            raise InputError(
-                f"{where}; allowed: at most {math.floor(largest)} nm, the size of {MOST_MONOMERS} monomers"
-            )
+            yield f"{where}; allowed: at most {math.floor(largest)} nm, the size of {MOST_MONOMERS} monomers"
         for kind in plan.config["types"]:
             smallest = smallest_a_eff(kind, radii) / NM
             # the size itself has no room for different radii: all monomers would have to be of the smallest one
             if not size > smallest * (1 + 1e-9):
-                raise InputError(
+                yield (
                     f"{where}; allowed: above {math.ceil(100 * smallest) / 100:g} nm, the size of the fewest monomers "
                     f"that {kind} is made of"
                 )
 
 
-def _check_paces(plan):
+def _paces(plan):
     for drive in plan.config["drives"]:
         where = "run and literal together" if drive == "literal" else "run"
         for kind in plan.config["types"]:
             laws = {key: plan.spin_up_of(drive, kind)[key] for key in ("stretch", "epsilon", "angular_acceleration")}
             if drive == "literal" and laws["stretch"] is not None or drive == "torque" and laws["stretch"] is None:
-                raise InputError(
-                    f"{_WHERE}: {where} give {laws} for the drive {drive}; allowed: "
-                    + ("null for stretch, since it does not wait" if drive == "literal" else "a number for stretch")
-                )
+                wanted = "null for stretch, since it does not wait" if drive == "literal" else "a number for stretch"
+                yield f": {where} give {laws} for the drive {drive}; allowed: {wanted}"
+                break
             if sum(value is not None for value in laws.values()) != 1:
-                raise InputError(
-                    f"{_WHERE}: {where} give {laws} for {kind}; "
-                    "allowed: a number for one of them and null for the others"
-                )
+                yield f": {where} give {laws} for {kind}; allowed: a number for one of them and null for the others"
+                break  # it is much the same for the other types
 
 
-def _check_fewer(plan):
-    """Raise InputError unless `seeds.fewer` names what the ensemble has, and leaves each drive a grain."""
+def _seeds(plan):
+    if plan.seeds[-1] > GREATEST_SEED:
+        yield f".seeds: the last one is {plan.seeds[-1]}; allowed: seeds up to {GREATEST_SEED}"
+
+
+def _fewer(plan):
+    """What is wrong where `seeds.fewer` names what the ensemble does not have, or leaves a drive no grain."""
     for k, entry in enumerate(plan.fewer):
-        where = f"seeds.fewer[{k}]"
+        where = f".seeds.fewer[{k}]"
         for key in ("drives", "materials", "types", "sizes_nm"):
-            _find_each(plan, entry.get(key, ()), key, f"{where}.{key}")
+            yield from _missing_ones(plan, entry.get(key, ()), key, f"{where}.{key}")
         if entry["number"] > len(plan.seeds):
-            raise InputError(f"{_WHERE}.{where}.number is {entry['number']}; allowed: 0 to {len(plan.seeds)}")
+            yield f"{where}.number is {entry['number']}; allowed: 0 to {len(plan.seeds)}"
     for drive in plan.config["drives"]:
         if not plan.cells_of(drive):
-            raise InputError(
-                f"{_WHERE}.seeds.fewer leaves no grain for the drive {drive}; allowed: at least one cell with seeds"
-            )
+            yield f".seeds.fewer leaves no grain for the drive {drive}; allowed: at least one cell with seeds"
 
 
-def _check_figure1(plan, own, where):
-    _find(plan, own["material"], "materials", f"{where}.material")
-    _find_each(plan, own["sizes_nm"], "sizes_nm", f"{where}.sizes_nm")
-    _find_seed(own["seed"], plan.seeds, f"{where}.seed")
+def _snapshot(plan, k):
+    grain, where = plan.snapshot_grains[k], f".snapshots.grains[{k}]"
+    yield from _missing_cell(plan, grain, where)
+    yield from _missing_seed(grain["seed"], plan.seeds_of(cell_of(grain)), f"{where}.seed")
 
 
-def _check_figure4(plan, own, where):
-    _find_cell(plan, own, where)
+def _figure(plan, name):
+    """What is wrong with one figure."""
+    own = plan.config["figures"][name]
+    if own is not None and name in _FIGURES:
+        yield from _FIGURES[name](plan, own, f".figures.{name}")
+
+
+def _figure1(plan, own, where):
+    yield from _missing(plan, own["material"], "materials", f"{where}.material")
+    yield from _missing_ones(plan, own["sizes_nm"], "sizes_nm", f"{where}.sizes_nm")
+    yield from _missing_seed(own["seed"], plan.seeds, f"{where}.seed")
+
+
+def _figure4(plan, own, where):
+    yield from _missing_cell(plan, own, where)
     for drive in plan.config["drives"]:
         if not plan.seeds_of(cell_of(own), drive):
-            raise InputError(
-                f"{_WHERE}.{where} is a cell that seeds.fewer leaves out for the drive {drive}; "
+            yield (
+                f"{where} is a cell that seeds.fewer leaves out for the drive {drive}; "
                 "allowed: a cell with grains for every drive, or null"
             )
 
 
-def _check_figure5(plan, own, where):
-    if own not in plan.config["snapshots"]["grains"]:
-        raise InputError(f"{_WHERE}.{where} is {own}; allowed: one of snapshots.grains, or null")
+def _figure5(plan, own, where):
+    key = (cell_of(own), own["seed"])
+    if key not in [(cell_of(grain), grain["seed"]) for grain in plan.snapshot_grains]:
+        yield f"{where} is {own}; allowed: one of snapshots.grains, or null"
+        return
     for drive in plan.config["drives"]:
-        _find_seed(own["seed"], plan.seeds_of(cell_of(own), drive), f"{where}.seed (drive {drive})")
+        yield from _missing_seed(own["seed"], plan.seeds_of(cell_of(own), drive), f"{where}.seed (drive {drive})")
 
 
-def _check_figure6(plan, own, where):
-    _find(plan, own["material"], "materials", f"{where}.material")
-    _find_each(plan, own["sizes_nm"], "sizes_nm", f"{where}.sizes_nm")
+def _figure6(plan, own, where):
+    yield from _missing(plan, own["material"], "materials", f"{where}.material")
+    yield from _missing_ones(plan, own["sizes_nm"], "sizes_nm", f"{where}.sizes_nm")
 
 
-def _check_figure8(plan, own, where):
+def _figure8(plan, own, where):
     for name, key in (("material", "materials"), ("type", "types"), ("scaled_at_nm", "sizes_nm")):
-        _find(plan, own[name], key, f"{where}.{name}")
+        yield from _missing(plan, own[name], key, f"{where}.{name}")
 
 
-def _check_formulae(plan, own, where):
-    _find(plan, own["material"], "materials", f"{where}.material")
+def _formulae(plan, own, where):
+    yield from _missing(plan, own["material"], "materials", f"{where}.material")
     for key in ("types", "sizes_nm"):
-        _find_each(plan, own[key], key, f"{where}.{key}")
+        yield from _missing_ones(plan, own[key], key, f"{where}.{key}")
 
 
-def _check_figure9(plan, own, where):
-    _check_formulae(plan, own, where)
-    _find_each(plan, plan.parameter_sizes("literal"), "sizes_nm", f"{where}.literal.sizes_nm")
+def _figure9(plan, own, where):
+    yield from _formulae(plan, own, where)
+    if "sizes_nm" in own["literal"]:
+        yield from _missing_ones(plan, own["literal"]["sizes_nm"], "sizes_nm", f"{where}.literal.sizes_nm")
 
 
-def _check_calibration(plan, own, where):
-    _find_cell(plan, own, where)
+def _calibration(plan, own, where):
+    yield from _missing_cell(plan, own, where)
     labels = plan.calibration_labels
     for k, label in enumerate(labels):
         if label in labels[:k]:
-            raise InputError(
-                f"{_WHERE}.{where}.runs[{k}] has the angular_acceleration and timestep_factor of an earlier one; "
+            yield (
+                f"{where}.runs[{k}] has the angular_acceleration and timestep_factor of an earlier one; "
                 "allowed: each pair once, for whichever seeds"
             )
 
 
 _FIGURES = {
-    "figure4": _check_figure4,
-    "figure6": _check_figure6,
-    "figure1": _check_figure1,
-    "figure5": _check_figure5,
-    "figure8": _check_figure8,
-    "figure9": _check_figure9,
-    "formulae": _check_formulae,
-    "calibration": _check_calibration,
+    "figure4": _figure4,
+    "figure6": _figure6,
+    "figure1": _figure1,
+    "figure5": _figure5,
+    "figure8": _figure8,
+    "figure9": _figure9,
+    "formulae": _formulae,
+    "calibration": _calibration,
 }
 """Key of `figures` -> what checks it; of figure 10 its schema says all."""
 
 
-def _find(plan, value, key, where):
-    """Raise InputError unless a value is one of those that the ensemble has under a key."""
+def _missing(plan, value, key, where):
+    """A sentence where a value is none of those that the ensemble has under a key; sizes by their labels."""
     allowed = plan.config[key]
-    if value not in allowed:
-        raise InputError(f"{_WHERE}.{where} is {value!r}; allowed: one of the {key}, {', '.join(map(str, allowed))}")
+    label = size_label if key == "sizes_nm" else str
+    if label(value) not in map(label, allowed):
+        yield f"{where} is {value!r}; allowed: one of the {key}, {', '.join(map(str, allowed))}"
 
 
-def _find_each(plan, values, key, where):
-    """Raise InputError unless each of a list is one of those that the ensemble has under a key."""
+def _missing_ones(plan, values, key, where):
+    """Sentences for those of a list that the ensemble does not have under a key."""
     for k, value in enumerate(values):
-        _find(plan, value, key, f"{where}[{k}]")
+        yield from _missing(plan, value, key, f"{where}[{k}]")
 
 
-def _find_seed(seed, seeds, where):
-    """Raise InputError unless a seed is one of a range."""
+def _missing_seed(seed, seeds, where):
+    """A sentence where a seed is none of a range."""
     if seed not in seeds:
         allowed = f"{seeds[0]} to {seeds[-1]}" if seeds else "none, seeds.fewer leaves the cell out"
-        raise InputError(f"{_WHERE}.{where} is {seed}; allowed: {allowed}")
+        yield f"{where} is {seed}; allowed: {allowed}"
 
 
-def _find_cell(plan, cell, where):
-    """Raise InputError unless the ensemble has a cell, a dict with material, type and size_nm."""
+def _missing_cell(plan, cell, where):
+    """Sentences where the ensemble does not have a cell, a dict with material, type and size_nm."""
     for name, key in (("material", "materials"), ("type", "types"), ("size_nm", "sizes_nm")):
-        _find(plan, cell[name], key, f"{where}.{name}")
+        yield from _missing(plan, cell[name], key, f"{where}.{name}")

@@ -6,6 +6,8 @@ A cell is one (material, type, size). Its seeds are grown and spun up in blocks,
 import re
 from itertools import groupby
 
+from ratd.pipeline.places import size_label
+
 __all__ = ["Cells", "cell_of", "consecutive", "size_label"]
 
 
@@ -19,11 +21,6 @@ def consecutive(seeds):
     # a number less its place stays the same as long as none is missing
     rows = groupby(enumerate(seeds), key=lambda item: item[1] - item[0])
     return [[seed for _, seed in row] for _, row in rows]
-
-
-def size_label(size):
-    """A size in nm as it stands in the name of a folder, e.g. ``"50"`` or ``"62.5"``."""
-    return f"{size:.10g}"
 
 
 class Cells:

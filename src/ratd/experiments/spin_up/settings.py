@@ -7,6 +7,7 @@ from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.formulae import DAMPING, FORMULAE
 from ratd.experiments.spin_up.parameters import ways
 from ratd.experiments.spin_up.seeds import Cells, size_label
+from ratd.pipeline.places import seeds_of
 
 __all__ = ["Settings"]
 
@@ -34,6 +35,11 @@ class Settings(Cells):
     def __init__(self, config, materials):
         super().__init__(config)
         self.materials = materials
+
+    @property
+    def snapshot_grains(self):
+        """Grains whose positions are kept, list of dict; empty where snapshots is null."""
+        return (self.config["snapshots"] or {"grains": []})["grains"]
 
     @property
     def radii(self):
@@ -89,7 +95,7 @@ class Settings(Cells):
         cell = (material, kind, size)
         snapshots = [
             grain["seed"]
-            for grain in self.config["snapshots"]["grains"]
+            for grain in self.snapshot_grains
             if (grain["material"], grain["type"], size_label(grain["size_nm"])) == cell
             and first <= grain["seed"] <= last
         ]
@@ -99,6 +105,16 @@ class Settings(Cells):
             "snapshot_seeds": sorted(set(snapshots)),
             "snapshot_every": self.config["snapshots"]["every"] if snapshots else 0,
         }
+
+    @staticmethod
+    def spin_up_minutes(size, block, attempt=1):
+        """Time limit of the spin-up of one block [min], for a cluster: some six times what the slowest grains take.
+
+        These are BA grains of 550 nm with 20 min each, and the time goes with the fourth power of the size
+        (benchmarks/results/cost_cells.csv). A job that ran into its limit goes on, and has more with each try.
+        """
+        minutes = 20 * len(seeds_of(block)) * (float(size) / 550) ** 4
+        return int(attempt * (30 + 6 * minutes))
 
     def ensemble(self, drive):
         """Settings of the statistics and the fit."""

@@ -1,0 +1,292 @@
+"""Spheres in files of other programs: text, CSV, extended XYZ and LAMMPS dumps, read and written."""
+
+import re
+import shlex
+from io import StringIO
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.grain import Grain
+from ratd.base.checks import check_radii, is_number
+from ratd.base.errors import FileError, InputError
+from ratd.base.materials import Material
+from ratd.pipeline.atomic import write_text
+
+__all__ = ["Particles", "read_particles", "write_particles"]
+
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
+"""Units of length in files, in m."""
+_COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
+_TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
+_XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
+SUFFIXES = (*_TABLES, *_XYZ, *_DUMP)
+
+
+class Particles(NamedTuple):
+    """Spheres of a file.
+
+    Attributes
+    ----------
+    position : (n, 3) float64 array
+        Centres [m].
+    radius : (n,) float64 array
+        Radii [m].
+    box : (3,) float64 array or None
+        Edges of the periodic box along x, y, z [m]; None in open space.
+    """
+
+    position: np.ndarray
+    radius: np.ndarray
+    box: np.ndarray | None = None
+
+    def grain(self, material: str | Material, **about) -> Grain:
+        """The aggregate of these spheres, see `ratd.Grain`."""
+        return Grain(self.position, self.radius, material, **about)
+
+
+def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Particles:
+    """Read spheres from a file.
+
+    Parameters
+    ----------
+    path : path-like
+        By its suffix: ``.txt``, ``.dat`` (columns x y z r, with or without their names in the first line) or ``.csv``;
+        ``.xyz``, ``.extxyz`` (extended XYZ with a column ``radius``); ``.dump``, ``.lammpstrj`` (text dump of LAMMPS
+        with x y z or xu yu zu, and radius).
+    unit : str, optional
+        Of all lengths in the file: m, cm, mm, um, nm or angstrom.
+    frame : int, optional
+        Which one, in a file of several; the last if not given.
+
+    Returns
+    -------
+    Particles
+
+    Raises
+    ------
+    FileError
+        One sentence with the file and what is wrong with it.
+    InputError
+        If the unit is unknown, or the radii are not those of dust in it.
+    """
+    path = Path(path)
+    factor = _factor(unit)
+    reader = _reader(path)
+    try:
+        table, box = reader(path, frame)
+        missing = [name for name in ("x", "y", "z", "radius") if name not in table]
+        if missing:
+            raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}")
+        values = table[["x", "y", "z", "radius"]].to_numpy(dtype=float)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read ({error.strerror})") from error
+    except (ValueError, IndexError, KeyError, TypeError, UnicodeDecodeError) as error:
+        raise FileError(f"{path}: is no {path.suffix} file of spheres ({error})") from error
+    if not len(values) or not np.isfinite(values).all() or not (values[:, 3] > 0).all():
+        raise FileError(f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0")
+    values = values * factor
+    try:
+        check_radii(values[:, 3])
+    except InputError as error:
+        raise InputError(f"{path}: read in {unit}: {error}") from error
+    return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
+
+
+def _factor(unit):
+    if unit not in UNITS:
+        raise InputError(f"unit is {unit!r}; allowed: {', '.join(UNITS)}")
+    return UNITS[unit]
+
+
+def _reader(path):
+    if path.suffix in _TABLES:
+        return _read_table
+    if path.suffix in _XYZ:
+        return _read_xyz
+    if path.suffix in _DUMP:
+        return _read_dump
+    raise InputError(f"{path}: has the suffix {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
+
+
+def _read_table(path, frame):
+    """Columns x, y, z and r or radius, by their names or, without these, in this order."""
+    separator = "," if path.suffix == ".csv" else r"\s+"
+    lines = [line.partition("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines()]
+    lines = [line for line in lines if line] or [""]
+    words = [word.strip().strip('"').lower() for word in re.split(separator, lines[0])]
+    named = any(re.match(r"[a-z]", word) and word not in ("nan", "inf") for word in words)
+    table = pd.read_csv(StringIO("\n".join(lines[int(named) :])), sep=separator, header=None)
+    if named:
+        table.columns = [_COLUMNS.get(re.split(r"[\s\[(_]", word)[0], word) for word in words]
+    else:
+        names = ["x", "y", "z", "radius"]
+        table.columns = (names + [f"column {k}" for k in range(5, len(table.columns) + 1)])[: len(table.columns)]
+    return table, None
+
+
+def _frames(lines, length):
+    """Frames of a file as lists of lines; `length` gives that of the one that begins with some lines."""
+    frames = []
+    while lines and any(line.strip() for line in lines):
+        n = length(lines)
+        if n > len(lines):
+            raise ValueError(f"the last frame has {len(lines)} lines instead of {n}")
+        frames.append(lines[:n])
+        lines = lines[n:]
+    return frames
+
+
+def _read_xyz(path, frame):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = _frames(lines, lambda lines: int(lines[0]) + 2)[frame]
+    about = dict(word.partition("=")[::2] for word in shlex.split(lines[1]))
+    fields = about["Properties"].split(":")
+    names = []
+    for name, _, width in zip(fields[::3], fields[1::3], fields[2::3], strict=True):
+        names += (
+            ["x", "y", "z"]
+            if name == "pos"
+            else [_COLUMNS.get(name, name)]
+            if width == "1"
+            else [f"{name}_{k}" for k in range(int(width))]
+        )
+    table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
+    periodic = about.get("pbc", "T T T" if "Lattice" in about else "").split()
+    if "Lattice" not in about or "T" not in periodic:
+        return table, None
+    return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3))
+
+
+def _diagonal(lattice):
+    if np.any(lattice - np.diag(np.diag(lattice))):
+        raise ValueError("the box is not rectangular; allowed: edges along x, y and z")
+    return np.diag(lattice).copy()
+
+
+def _read_dump(path, frame):
+    """One step of a text dump of LAMMPS."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+
+    def length(lines):
+        at = lines.index("ITEM: NUMBER OF ATOMS")
+        return next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")) + 1 + int(lines[at + 1])
+
+    lines = _frames(lines, length)[frame]
+    at = next(k for k, line in enumerate(lines) if line.startswith("ITEM: BOX BOUNDS"))
+    begin = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    bounds = np.array([line.split() for line in lines[at + 1 : at + 4]], dtype=float)
+    if bounds.shape[1] != 2:
+        raise ValueError("the box is not rectangular; allowed: edges along x, y and z")
+    names = lines[begin].split()[2:]
+    body = StringIO("\n".join(lines[begin + 1 :]))
+    table = pd.read_csv(body, sep=r"\s+", header=None, names=[_COLUMNS.get(name, name) for name in names])
+    if "id" in table:
+        table = table.sort_values("id", ignore_index=True)
+    return table, bounds[:, 1] - bounds[:, 0] if "p" in lines[at] else None
+
+
+def write_particles(content, path: str | Path, unit: str = "nm") -> None:
+    """Write spheres to a file that OVITO, ASE and others read.
+
+    Parameters
+    ----------
+    content : ratd.Grain, Particles, or xarray.Dataset
+        A grain; what `read_particles` gives; the snapshots of a run of `ratd.spin_up`, a frame each; or the last state
+        of one of `ratd.evolve`.
+    path : path-like
+        By its suffix one of the formats of `read_particles`. Text and CSV hold one frame.
+    unit : str, optional
+        Of all lengths in the file; forces are in nN.
+
+    Notes
+    -----
+    Besides positions and radii the columns are: ``fragment``, the number of the fragment or piece, 0 being the largest;
+    ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
+    dropped are left out. The frames of a spin-up are those of the frame that turns with the grain.
+    """
+    path = Path(path)
+    factor = _factor(unit)
+    _reader(path)
+    frames = list(_contents(content))
+    if not frames:
+        raise InputError(f"{path}: the run has no snapshots to write; set snapshot_every")
+    if path.suffix in _TABLES:
+        if len(frames) > 1:
+            raise InputError(f"{path}: a {path.suffix} file holds one frame, but there are {len(frames)}; use .xyz")
+        text = frames[0][0].rename(columns={"radius": "r"}).assign(**_scaled(frames[0][0], factor, radius="r"))
+        text = text.to_csv(sep=_TABLES[path.suffix], index=False, float_format="%.12g")
+    else:
+        write = _xyz if path.suffix in _XYZ else _dump
+        text = "".join(
+            write(
+                table.assign(**_scaled(table, factor)), None if box is None else box / factor, about | {"unit": unit}, k
+            )
+            for k, (table, box, about) in enumerate(frames)
+        )
+    write_text(path, text)
+
+
+def _scaled(table, factor, radius="radius"):
+    """Columns of lengths in the unit of the file."""
+    names = {"x": "x", "y": "y", "z": "z", "radius": radius}
+    return {new: table[name] / factor for name, new in names.items()}
+
+
+def _contents(content):
+    """Frames: a table of columns in SI units (forces in nN), edges of the box or None, and what is said of it."""
+    if isinstance(content, Grain | Particles):
+        yield _table(content.position, content.radius), getattr(content, "box", None), {}
+    elif "snapshot_x" in content:
+        for k in range(content.sizes["snapshot"]):
+            snapshot = content.isel(snapshot=k)
+            fragment = snapshot["snapshot_fragment"].values
+            position = np.stack([snapshot[f"snapshot_{axis}"].values for axis in "xyz"], axis=1)
+            force = snapshot["snapshot_normal_force"].values * 1e9
+            table = _table(position, content["monomer_radius"].values, fragment=fragment, normal_force=force)
+            yield table[fragment >= 0], None, {"omega": float(snapshot["snapshot_omega"])}
+    elif "position" in content:
+        box = content["box_length"].values[-1] if "box_length" in content else np.zeros(3)
+        table = _table(content["position"].values, content["radius"].values, fragment=content["piece"].values)
+        yield table, box if np.all(box > 0) else None, {"time": float(content["time"].values[-1])}
+
+
+def _table(position, radius, **more):
+    return pd.DataFrame(dict(zip("xyz", np.transpose(position), strict=True)) | {"radius": radius} | more)
+
+
+def _rows(table):
+    return table.to_csv(sep=" ", header=False, index=False, float_format="%.12g", lineterminator="\n")
+
+
+def _xyz(table, box, about, step):
+    kinds = {name: "I" if table[name].dtype.kind == "i" else "R" for name in table if name not in ("x", "y", "z")}
+    properties = "species:S:1:pos:R:3:" + ":".join(f"{name}:{kind}:1" for name, kind in kinds.items())
+    words = [f"Properties={properties}", *(f"{name}={_word(value)}" for name, value in about.items())]
+    if box is not None:
+        words.append(f'Lattice="{box[0]:.12g} 0 0 0 {box[1]:.12g} 0 0 0 {box[2]:.12g}" pbc="T T T"')
+    else:
+        words.append('pbc="F F F"')
+    # no monomer is an atom: X is ASE's name for what is none
+    return f"{len(table)}\n{' '.join(words)}\n{_rows(table.assign(species='X')[['species', *table]])}"
+
+
+def _word(value):
+    return f"{value:.9g}" if is_number(value) else value
+
+
+def _dump(table, box, about, step):
+    place = table[["x", "y", "z"]]
+    low, high = place.min() - table["radius"].max(), place.max() + table["radius"].max()
+    if box is not None:
+        low, high = pd.Series(np.zeros(3), list("xyz")), pd.Series(box, list("xyz"))
+    edges = "".join(f"{low[axis]:.12g} {high[axis]:.12g}\n" for axis in "xyz")
+    sides = "pp pp pp" if box is not None else "ff ff ff"
+    columns = "id type " + " ".join("xu yu zu".split() + list(table.columns[3:]))
+    rows = _rows(table.assign(id=table.index + 1, type=1)[["id", "type", *table]])
+    return (
+        f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(table)}\nITEM: BOX BOUNDS {sides}\n{edges}"
+        f"ITEM: ATOMS {columns}\n{rows}"
+    )

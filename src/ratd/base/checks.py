@@ -1,0 +1,94 @@
+"""What counts as a number, as an array of numbers, and as the size of a grain of dust."""
+
+from numbers import Integral, Real
+
+import numpy as np
+
+from ratd.base.errors import InputError
+
+__all__ = ["GREATEST_SEED", "check_radii", "far_apart", "is_number", "is_whole", "number_array"]
+
+SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
+"""Radii of monomers [m], from an atom to a grain of sand: what lies outside was given in another unit."""
+FAR = 1e4
+"""Spheres that lie apart by more than this many times the length of all of them in a row do not belong together."""
+_UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3}
+GREATEST_SEED = 2**53
+"""Seeds are kept in files as whole numbers, and in tables as floating-point ones, which tell them apart up to here."""
+
+
+def is_number(value):
+    """Whether a value is a finite real number, numpy's included; True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool) and bool(np.isfinite(value))
+
+
+def is_whole(value):
+    """Whether a value is a whole number, numpy's included; True and False are none."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def number_array(values, name, unit="m"):
+    """A contiguous float64 copy of an array of real numbers.
+
+    Parameters
+    ----------
+    values : array_like
+    name : str
+        For the message.
+    unit : str, optional
+        For the message.
+
+    Returns
+    -------
+    float64 array
+
+    Raises
+    ------
+    InputError
+        If it holds text, complex numbers or anything else, or its rows differ in length.
+    """
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        array = np.asarray("")
+    if array.dtype.kind not in "iuf" and array.size:
+        raise InputError(f"{name} is not an array of numbers; it must hold finite numbers in {unit}.")
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def check_radii(radius):
+    """Raise an error for radii that no dust has, with the factor that would make them such.
+
+    Parameters
+    ----------
+    radius : (n,) float64 array
+        Radii above 0 [m].
+
+    Raises
+    ------
+    InputError
+        One sentence with the factor.
+    """
+    if _is_dust(radius):
+        return
+    middle = float(np.median(radius))
+    factors = [f"those in {unit} by {factor:g}" for unit, factor in _UNITS.items() if _is_dust(radius * factor)]
+    if not factors and _is_dust(radius * 1e9):
+        factors = ["these by 1e+09, which they may have been divided by twice"]
+    hint = f"; multiply {factors[0]}" if factors else ""
+    raise InputError(
+        f"radius has the median {middle:g}; lengths are in m, and the radii of dust lie between "
+        f"{SMALLEST_RADIUS:g} and {LARGEST_RADIUS:g} m{hint}."
+    )
+
+
+def far_apart(position, radius):
+    """A hint where spheres are so far apart that positions and radii must be in different units, else empty."""
+    spread = float(np.max(np.ptp(position, axis=0), initial=0.0))
+    if spread < FAR * float(np.sum(2 * radius)):
+        return ""
+    return f" Positions reach over {spread:g}, in m: multiply those in nm by 1e-09."
+
+
+def _is_dust(radius):
+    return SMALLEST_RADIUS <= np.min(radius) and np.max(radius) <= LARGEST_RADIUS

@@ -1,0 +1,91 @@
+"""``python -m ratd show``: what is in a file, as a picture and in numbers."""
+
+from importlib import import_module
+from pathlib import Path
+
+import click
+import netCDF4
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from ratd.aggregates.files import read_grains
+from ratd.aggregates.particles import read_particles
+from ratd.base.errors import FileError, InputError
+from ratd.base.materials import MATERIALS
+from ratd.geometry.shape import Shape, centre_of_mass
+from ratd.pictures.snapshots import OTHERS
+from ratd.pictures.spheres import render, view_axes
+from ratd.pictures.spheres import show as draw
+from ratd.pictures.style import ONE_COLUMN, new_figure, save, styled
+
+__all__ = ["command", "show"]
+
+VIEW, UP = (0.75, -0.55, 0.37), (0.0, 0.0, 1.0)
+
+
+@click.command("show")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--unit", default="nm", show_default=True, help="Of a file of spheres.")
+@click.option("--material", type=click.Choice(list(MATERIALS)), help="Of a file of spheres: counts its contacts.")
+@click.option("--out", type=click.Path(path_type=Path), help="Stem of the files written.  [default: that of FILE]")
+def command(file, unit, material, out):
+    """Show what is in FILE: spheres, or results of ratd."""
+    out = file.with_suffix("") if out is None else out
+    if file.suffix != ".nc":
+        particles = read_particles(file, unit=unit)
+        contacts = "" if material is None else f", {particles.grain(material).n_contacts} contacts"
+        lines = _picture(particles.position, particles.radius, file.name, out, contacts)
+    else:
+        lines = import_module(_home(file)).show(file, out)
+    click.echo("\n".join(lines))
+
+
+def _home(path):
+    """Module that shows files of the kind of a file."""
+    from ratd.command import SHOWN
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            kind = getattr(file, "file_kind", None)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read as netCDF ({error})") from error
+    if kind not in SHOWN:
+        raise InputError(f"{path}: is a file of {kind}; allowed: files of {', '.join(SHOWN)}, or of spheres")
+    return SHOWN[kind]
+
+
+def show(path, out):
+    """Picture of the first grain of a file of grains, and the numbers of all."""
+    grains = read_grains(path)
+    lines = [
+        f"seed {grain.seed}: {grain.n_monomers} monomers, {grain.n_contacts} contacts, "
+        f"porosity {grain.shape.porosity:.3f}"
+        for grain in grains
+    ]
+    first = grains[0]
+    return lines + _picture(first.position, first.radius, f"{first.material.name} {first.type}, seed {first.seed}", out)
+
+
+@styled
+def _figure(position, radius, title):
+    """Spheres in perspective shade, with a scale bar."""
+    centre = centre_of_mass(position, radius**3)
+    place = (position - centre) @ view_axes(VIEW, UP).T
+    half_width = 1.05 * float(np.max(np.linalg.norm(place, axis=1) + radius))
+    figure = new_figure(ONE_COLUMN, ONE_COLUMN, title)
+    picture = render(place, radius, np.tile(to_rgb(OTHERS[4]), (len(radius), 1)), half_width, pixels=720)
+    draw(figure.subplots(), picture, half_width)
+    return figure
+
+
+def _picture(position, radius, title, out, contacts=""):
+    """Write the picture of an aggregate; what to say of it."""
+    shape = Shape.measure(position, radius, 1.0, 0)
+    path = Path(f"{out}.png")
+    save(_figure(position, radius, title), path)
+    return [
+        f"{len(radius)} monomers{contacts}, radii {radius.min() * 1e9:.4g} to {radius.max() * 1e9:.4g} nm",
+        f"effective radius {np.cbrt(np.sum(radius**3)) * 1e9:.4g} nm, smallest sphere around it "
+        f"{shape.enclosing_radius * 1e9:.4g} nm, porosity {shape.porosity:.3f}",
+        f"{path} written",
+    ]

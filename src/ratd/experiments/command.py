@@ -1,0 +1,146 @@
+"""What the subcommands of all experiments share: options, starts, progress, and the answer with its uncertainty.
+
+An aggregate is chaotic where contacts slip and break: a start that differs by less than an atom comes apart otherwise.
+So each answer is that of several starts, whose scatter is its uncertainty.
+"""
+
+import logging
+import shutil
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+
+from ratd.aggregates.particles import UNITS
+from ratd.base.checks import is_number
+from ratd.base.materials import MATERIALS
+from ratd.base.words import plural
+from ratd.pipeline.partial import Block, Pieces, locked
+
+__all__ = ["aggregate_options", "answer", "moved", "progress_bar", "several"]
+
+SHIFT = 1e-12
+"""How far the monomers of a start are moved [m], a hundredth of an atom."""
+
+
+def aggregate_options(function):
+    """Arguments and options that say which aggregate is meant, of what, and how often; a decorator."""
+    for decorate in (
+        click.option(
+            "--out", type=click.Path(path_type=Path), help="Stem of the files written.  [default: that of FILE]"
+        ),
+        click.option("--starts", default=5, show_default=True, type=click.IntRange(1, 1000), help="Number of starts."),
+        click.option("--unit", default="nm", show_default=True, type=click.Choice(list(UNITS)), help="Of FILE."),
+        click.option("--material", required=True, type=click.Choice(list(MATERIALS)), help="Of all monomers."),
+        click.argument("file", type=click.Path(path_type=Path)),
+    ):
+        function = decorate(function)
+    return function
+
+
+def moved(position, start):
+    """Positions of one of several starts.
+
+    Parameters
+    ----------
+    position : (n, 3) float64 array
+        Centres [m].
+    start : int
+        Its number; those of 0 are not moved.
+
+    Returns
+    -------
+    (n, 3) float64 array
+        Each monomer moved by `SHIFT` in a random direction, the same for the same number.
+    """
+    if start == 0:
+        return position
+    direction = np.random.default_rng(start).normal(size=position.shape)
+    return position + SHIFT * direction / np.linalg.norm(direction, axis=1, keepdims=True)
+
+
+def several(target, kind, material, provenance, starts, make):
+    """Write a file with the runs of several starts; a killed command goes on where it was.
+
+    Parameters
+    ----------
+    target : path-like
+        The file.
+    kind : str
+        Its kind, see `ratd.pipeline.kinds`.
+    material : ratd.Material
+    provenance : dict
+        From `ratd.pipeline.provenance.provenance`.
+    starts : int
+        Their number.
+    make : callable
+        ``make(start, checkpoint, progress)`` returns the row of a start (see `ratd.pipeline.blocks`). It calls
+        ``progress(part)`` with the part of the work that is done, and may keep what it needs to go on below the path
+        `checkpoint`.
+    """
+    block = Block(Path(target), material, list(range(starts)), provenance)
+    with locked(block.folder / "lock", logging.getLogger(__name__)):
+        pieces = Pieces(block, kind)
+        with progress_bar(starts) as tell:
+            for start in block.seeds:
+                tell(start, 0.0)
+                if start not in pieces:
+                    pieces.add(start, make(start, block.checkpoint(start), lambda part, start=start: tell(start, part)))
+                tell(start, 1.0)
+        pieces.join()
+    shutil.rmtree(block.folder, ignore_errors=True)
+
+
+class progress_bar:
+    """A bar on the terminal for some starts, as a context that gives ``tell(start, part)``."""
+
+    def __init__(self, starts):
+        self._starts = starts
+        self._bar = click.progressbar(length=1000 * starts, label=plural(starts, "start"), show_pos=False)
+        self._done = 0
+
+    def __enter__(self):
+        self._bar.__enter__()
+        return self._tell
+
+    def __exit__(self, *error):
+        return self._bar.__exit__(*error)
+
+    def _tell(self, start, part):
+        self._bar.label = f"start {start + 1} of {self._starts}"
+        done = int(1000 * (start + min(max(part, 0.0), 1.0)))
+        if done > self._done:  # a guess of the time to go may take some of it back
+            self._bar.update(done - self._done)
+            self._done = done
+
+
+def part_done(begun, to_go):
+    """Part of a run that is done, from when it began (`time.monotonic`) and the seconds that it has to go."""
+    gone = time.monotonic() - begun
+    return gone / (gone + to_go) if is_number(to_go) and gone + to_go > 0 else 0.0
+
+
+def answer(name, values, unit):
+    """A quantity with its uncertainty, from that of each start.
+
+    Parameters
+    ----------
+    name : str
+    values : array_like
+        One a start; NaN where it has none.
+    unit : str
+
+    Returns
+    -------
+    str
+        Such as ``"omega_disr = 3.21e+08 ± 4e+06 rad/s"``, with mean and standard deviation.
+    """
+    values = np.asarray(values, dtype=float)
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return f"{name}: unknown, no start shows it"
+    few = f", known in {known.size} of {values.size} starts" if known.size < values.size else ""
+    if known.size == 1:
+        return f"{name} = {known[0]:.4g} {unit}{few}"
+    return f"{name} = {known.mean():.4g} ± {known.std(ddof=1):.2g} {unit}{few}"

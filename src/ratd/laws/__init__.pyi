@@ -1,0 +1,22 @@
+"""Types of `ratd.laws`, whose names are loaded on first use."""
+
+from typing import Any, Literal
+
+def dmt(
+    *,
+    viscous_time: float = 5e-10,
+    friction: Literal["velocity", "spring"] = "velocity",
+    friction_time: float = 0.0,
+    sliding_limit: float = 1.0,
+    rolling_limit: float = 1.0,
+    twisting_limit: float = 1.0,
+) -> Any: ...
+def jkr(
+    *,
+    damping: Literal["viscoelastic", "constant"] = "viscoelastic",
+    constant_damping: float = 0.01,
+    friction: str = "springs",
+    sliding_stiffness: float = 1.0,
+    sliding_limit: float = 1.0,
+    twisting_stiffness: float = 1.0,
+) -> Any: ...

@@ -1,0 +1,161 @@
+"""Spheres in files of other programs: read back by ratd, by OVITO and by ASE."""
+
+import numpy as np
+import pytest
+
+import ratd
+from files import make_grain, make_run
+from ratd.aggregates.particles import Particles, read_particles, write_particles
+from ratd.base.errors import FileError, InputError
+
+FORMATS = ("txt", "dat", "csv", "xyz", "extxyz", "dump", "lammpstrj")
+BOX = np.array([3e-7, 4e-7, 5e-7])
+
+
+@pytest.fixture(scope="module")
+def grain():
+    return make_grain(n=5)
+
+
+def snapshots(n=3):
+    """A run with made-up snapshots, in the last of which one monomer has been dropped."""
+    run = make_run(n_snapshots=n, n_monomers=4)
+    run["snapshot_fragment"][:] = [[0, 0, 0, 0], [0, 0, 1, 1], [0, 0, 1, -1]][:n]
+    for axis in "xyz":
+        run[f"snapshot_{axis}"] = run[f"snapshot_{axis}"] * 1e-8
+    run["monomer_radius"] = run["monomer_radius"] * 1e-8
+    run["snapshot_normal_force"] = (run["snapshot_normal_force"] - 5) * 1e-9
+    run["snapshot_omega"] = ("snapshot", [1e8, 2e8, 3e8][:n])
+    return run
+
+
+@pytest.mark.parametrize("unit", ["nm", "m", "um"])
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_a_grain_comes_back(tmp_path, grain, suffix, unit):
+    path = tmp_path / f"grain.{suffix}"
+    ratd.write_particles(grain, path, unit=unit)
+    back = ratd.read_particles(path, unit=unit)
+    np.testing.assert_allclose(back.position, grain.position, rtol=1e-10, atol=1e-20)
+    np.testing.assert_allclose(back.radius, grain.radius, rtol=1e-10)
+    assert back.box is None and back.grain("q-S", seed=3).n_contacts == grain.n_contacts
+
+
+@pytest.mark.parametrize("suffix", ["xyz", "dump"])
+def test_a_box_comes_back(tmp_path, grain, suffix):
+    write_particles(Particles(grain.position, grain.radius, BOX), tmp_path / f"grain.{suffix}")
+    np.testing.assert_allclose(read_particles(tmp_path / f"grain.{suffix}").box, BOX)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.txt", "0 0 0 20\n0 0 40 20\n"),
+        ("a.txt", "# made by hand\nx y z r\n0 0 0 20  # the first\n\n0 0 40 20\n"),
+        ("a.dat", "x [nm]\ty\tz\tr\n0\t0\t0\t20\n0\t0\t40\t20\n".replace(" [nm]", "[nm]")),
+        ("a.csv", "radius,x,y,z,name\n20,0,0,0,a\n20,0,0,40,b\n"),
+        ("a.csv", "0,0,0,20\n0,0,4e1,20\n"),
+        ("a.xyz", "2\nProperties=pos:R:3:r:R:1\n0 0 0 20\n0 0 40 20\n"),
+        (
+            "a.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
+            "ITEM: ATOMS id type radius x y z\n2 1 20 0 0 40\n1 1 20 0 0 0\n",
+        ),
+    ],
+)
+def test_files_as_others_write_them(tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    read = read_particles(tmp_path / name)
+    np.testing.assert_allclose(read.position, [[0, 0, 0], [0, 0, 40e-9]])
+    np.testing.assert_allclose(read.radius, 20e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.txt", "0 0 20\n", "is no .txt file of spheres .there is no column radius; the columns are x, y, z"),
+        ("a.txt", "", "is no .txt file of spheres"),
+        ("a.txt", "0 0 0 -20\n", "holds 1 spheres; allowed: finite numbers x, y, z and radii above 0"),
+        ("a.csv", "x,y,z,r\n0,0,zero,20\n", "is no .csv file of spheres .could not convert string to float: 'zero'"),
+        ("a.xyz", "3\nProperties=pos:R:3:radius:R:1\n0 0 0 20\n", "the last frame has 3 lines instead of 5"),
+        ("a.xyz", "1\nno properties\n0 0 0 20\n", "is no .xyz file of spheres .'Properties'"),
+        ("a.xyz", '1\nProperties=pos:R:3:r:R:1 Lattice="9 1 0 0 9 0 0 0 9"\n0 0 0 2\n', "the box is not rectangular"),
+        ("a.dump", "ITEM: TIMESTEP\n", "is no .dump file of spheres"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_said_in_one_sentence(tmp_path, name, text, said):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(FileError, match=said) as error:
+        read_particles(tmp_path / name)
+    assert str(tmp_path / name) in str(error.value) and "\n" not in str(error.value)
+
+
+def test_wrong_arguments(tmp_path, grain):
+    write_particles(grain, tmp_path / "a.txt")
+    with pytest.raises(InputError, match="read in m: radius has the median 21.*multiply those in nm by 1e-09"):
+        read_particles(tmp_path / "a.txt", unit="m")
+    with pytest.raises(InputError, match="unit is 'pc'; allowed: m, cm"):
+        read_particles(tmp_path / "a.txt", unit="pc")
+    with pytest.raises(InputError, match=r"has the suffix '.pdf'; allowed: .csv, .txt"):
+        write_particles(grain, tmp_path / "a.pdf")
+    with pytest.raises(FileError, match="b.txt: cannot be read"):
+        read_particles(tmp_path / "b.txt")
+    with pytest.raises(InputError, match="holds one frame, but there are 3; use .xyz"):
+        write_particles(snapshots(), tmp_path / "a.csv")
+    with pytest.raises(InputError, match="no snapshots to write"):
+        write_particles(make_run(), tmp_path / "a.xyz")
+
+
+@pytest.mark.parametrize("suffix", ["xyz", "dump"])
+def test_frames_of_a_run_come_back_one_by_one(tmp_path, suffix):
+    run = snapshots()
+    write_particles(run, tmp_path / f"run.{suffix}")
+    for k, n in enumerate((4, 4, 3)):
+        x = run["snapshot_x"].values[k, :n]
+        np.testing.assert_allclose(read_particles(tmp_path / f"run.{suffix}", frame=k).position[:, 0], x, rtol=1e-10)
+    assert len(read_particles(tmp_path / f"run.{suffix}").radius) == 3
+    with pytest.raises(FileError, match="is no"):
+        read_particles(tmp_path / f"run.{suffix}", frame=3)
+
+
+def test_the_end_of_an_evolution_is_written_with_its_box(tmp_path, grain):
+    run = ratd.evolve(grain.position, grain.radius, box=ratd.periodic(1e-6), duration=1e-12, records=1)
+    write_particles(run, tmp_path / "end.xyz")
+    back = read_particles(tmp_path / "end.xyz")
+    np.testing.assert_allclose(back.position, run["position"], rtol=1e-10, atol=1e-20)
+    np.testing.assert_allclose(back.box, 1e-6)
+
+
+@pytest.mark.parametrize("suffix", ["xyz", "dump"])
+def test_ovito_reads_radius_fragment_force_and_box(tmp_path, suffix):
+    ovito = pytest.importorskip("ovito.io")
+    run = snapshots()
+    write_particles(run, tmp_path / f"run.{suffix}")
+    pipeline = ovito.import_file(str(tmp_path / f"run.{suffix}"))
+    assert pipeline.num_frames == 3
+    data = pipeline.compute(2)
+    np.testing.assert_allclose(data.particles["Position"][:, 0], run["snapshot_x"].values[2, :3] * 1e9)
+    np.testing.assert_allclose(data.particles["Radius"], run["monomer_radius"].values[:3] * 1e9)
+    np.testing.assert_array_equal(data.particles["fragment"], [0, 0, 1])
+    np.testing.assert_allclose(data.particles["normal_force"], run["snapshot_normal_force"].values[2, :3] * 1e9)
+    write_particles(Particles(np.ones((1, 3)) * 1e-8, np.array([1e-8]), BOX), tmp_path / f"box.{suffix}")
+    cell = ovito.import_file(str(tmp_path / f"box.{suffix}")).compute().cell
+    np.testing.assert_allclose(np.diag(cell[:3, :3]), BOX * 1e9)
+    assert all(cell.pbc)
+
+
+def test_ase_reads_radius_fragment_force_and_box(tmp_path):
+    ase = pytest.importorskip("ase.io")
+    run = snapshots()
+    write_particles(run, tmp_path / "run.extxyz")
+    *_, last = frames = ase.read(tmp_path / "run.extxyz", index=":")
+    assert len(frames) == 3 and last.info["omega"] == 3e8 and last.info["unit"] == "nm"
+    np.testing.assert_allclose(last.arrays["radius"], run["monomer_radius"].values[:3] * 1e9)
+    np.testing.assert_array_equal(last.arrays["fragment"], [0, 0, 1])
+    np.testing.assert_allclose(last.arrays["normal_force"], run["snapshot_normal_force"].values[2, :3] * 1e9)
+    assert not last.pbc.any()
+    write_particles(Particles(np.ones((1, 3)) * 1e-8, np.array([1e-8]), BOX), tmp_path / "box.extxyz")
+    np.testing.assert_allclose(ase.read(tmp_path / "box.extxyz").cell.lengths(), BOX * 1e9)
+    # and what ASE writes comes back
+    frames[0].set_array("radius", frames[0].arrays["radius"])
+    ase.write(tmp_path / "theirs.xyz", frames[0], format="extxyz")
+    np.testing.assert_allclose(read_particles(tmp_path / "theirs.xyz").radius, run["monomer_radius"], rtol=1e-6)

@@ -1,0 +1,122 @@
+"""``python -m ratd``: one aggregate from a file, one answer."""
+
+import re
+import subprocess
+import sys
+from importlib import import_module
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import ratd
+from files import grains_file, make_grain
+from ratd.aggregates.particles import write_particles
+from ratd.command import COMMANDS, SHOWN, main
+from ratd.experiments.command import SHIFT, answer, moved, part_done
+from ratd.experiments.spin_up import command, run_files
+from ratd.pipeline.kinds import HOMES
+
+FAST = ("--material", "q-S", "--epsilon", "1", "--starts", "3")
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def chain(tmp_path):
+    write_particles(make_grain(n=4), tmp_path / "chain.xyz")
+    return tmp_path / "chain.xyz"
+
+
+def test_an_aggregate_is_spun_up_from_its_file(chain):
+    done = run("spin-up", chain, *FAST)
+    assert done.exit_code == 0, done.output
+    runs = run_files.read_runs(chain.with_name("chain_spin_up.nc"))
+    omega = [float(ratd.disruption(run)["omega_disr"]) for run in runs]
+    said = re.search(r"omega_disr = (\S+) ± (\S+) rad/s", done.stdout)
+    assert float(said[1]) == pytest.approx(np.mean(omega), rel=1e-3)
+    assert float(said[2]) == pytest.approx(np.std(omega, ddof=1), rel=0.06)
+    assert [run.sizes.get("snapshot", 0) > 0 for run in runs] == [True, False, False]
+    assert chain.with_name("chain_spin_up.png").read_bytes()[1:4] == b"PNG"
+    assert chain.with_name("chain_spin_up.html").read_text().startswith("<!doctype html>")
+    assert not list(chain.parent.glob("*.partial"))
+    # and the same again from the file
+    again = run("show", chain.with_name("chain_spin_up.nc"), "--out", chain.with_name("again"))
+    assert again.exit_code == 0 and said[0] in again.stdout
+    assert chain.with_name("again.png").exists()
+
+
+def test_a_stopped_command_goes_on_with_the_same_answer(chain, monkeypatch):
+    assert run("spin-up", chain, *FAST, "--out", chain.with_name("whole")).exit_code == 0
+    begun = []
+
+    def stopped(grain, **how):
+        begun.append(grain.seed)
+        if grain.seed == 2 and len(begun) == 3:
+            raise KeyboardInterrupt
+        return ratd.spin_up(grain, **how)
+
+    monkeypatch.setattr(command, "spin_up", stopped)
+    # what takes no time is written with what comes next; here every start at once
+    monkeypatch.setattr("ratd.pipeline.partial.WORK_BETWEEN_PIECES", 0)
+    assert run("spin-up", chain, *FAST).exit_code != 0
+    assert not chain.with_name("chain_spin_up.nc").exists()
+    assert run("spin-up", chain, *FAST).exit_code == 0
+    assert begun == [0, 1, 2, 2]
+    assert chain.with_name("chain_spin_up.nc").read_bytes() == chain.with_name("whole.nc").read_bytes()
+
+
+def test_starts_are_moved_by_less_than_an_atom(chain):
+    position = make_grain(n=4).position
+    first, second = moved(position, 1), moved(position, 2)
+    assert moved(position, 0) is position and np.array_equal(first, moved(position, 1))
+    assert not np.array_equal(first, second)
+    np.testing.assert_allclose(np.linalg.norm(first - position, axis=1), SHIFT, rtol=1e-3)
+
+
+def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
+    done = run("show", chain, "--material", "q-S")
+    assert done.exit_code == 0 and "4 monomers, 3 contacts, radii 20" in done.stdout
+    assert chain.with_suffix(".png").read_bytes()[1:4] == b"PNG"
+    grains_file(chain.with_name("grains.nc"))
+    done = run("show", chain.with_name("grains.nc"))
+    assert done.exit_code == 0 and "seed 2: 5 monomers, 4 contacts, porosity" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("spin-up", "none.xyz", *FAST), "error: none.xyz: cannot be read"),
+        (("spin-up", "{chain}", *FAST, "--unit", "m"), "multiply those in nm by 1e-09"),
+        (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not one of 'a-C'"),
+        (("spin-up", "{apart}", *FAST), "error: The aggregate is in 2 pieces"),
+        (("show", "none.nc"), "error: none.nc: cannot be read as netCDF"),
+        (("melt", "{chain}"), "No such command 'melt'"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_sentence(chain, arguments, said):
+    chain.with_name("apart.txt").write_text("0 0 0 20\n0 0 50 20\n")
+    names = {"chain": str(chain), "apart": str(chain.with_name("apart.txt"))}
+    done = run(*[argument.format(**names) for argument in arguments])
+    assert done.exit_code != 0 and said in done.output and "Traceback" not in done.output
+
+
+def test_the_answer_says_what_is_not_known():
+    assert answer("x", [1.0, 3.0], "m") == "x = 2 ± 1.4 m"
+    assert answer("x", [np.nan, 3.0], "m") == "x = 3 m, known in 1 of 2 starts"
+    assert answer("x", [np.nan], "m") == "x: unknown, no start shows it"
+    assert part_done(0.0, float("inf")) == 0.0 and 0 < part_done(0.0, 1.0) <= 1
+
+
+def test_every_subcommand_is_there():
+    for name, home in COMMANDS.items():
+        assert import_module(home).command.name == name
+    for kind, home in SHOWN.items():
+        assert kind in HOMES and callable(import_module(home).show)
+
+
+def test_the_module_can_be_run(tmp_path):
+    done = subprocess.run([sys.executable, "-m", "ratd", "--help"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0 and "spin-up" in done.stdout and "python -m ratd" in done.stdout
