@@ -27,7 +27,9 @@ ROW = "row"
 
 HOMES = {
     "grains": "ratd.aggregates.files",
-    **dict.fromkeys(("spinup", "disruption", "table", "cells", "fit", "fragments"), "ratd.experiments.spin_up.files"),
+    **dict.fromkeys(
+        ("spinup", "disruption", "table", "cells", "fit", "fragments", "spun_up"), "ratd.experiments.spin_up.files"
+    ),
     **dict.fromkeys(("clusters", "compression"), "ratd.experiments.compression.files"),
     **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
     "tension_set": "ratd.experiments.compression.pull",

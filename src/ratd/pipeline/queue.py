@@ -15,10 +15,15 @@ from ratd.pipeline import blocks, io
 from ratd.pipeline.partial import locked
 from ratd.pipeline.provenance import canonical, settings_hash
 
-__all__ = ["Table", "Task", "command", "state", "work"]
+__all__ = ["Table", "Task", "command", "key", "state", "work"]
 
 WRITE_EVERY = 20.0
 """Rows of a table that are finished within so long [s] are written together; a kill costs no more than that."""
+
+
+def key(*numbers):
+    """What names a row, tuple of float: numbers that differ by rounding alone are the same."""
+    return tuple(float(f"{number:.9g}") for number in numbers)
 
 
 class Table:
@@ -58,8 +63,8 @@ class Table:
         self._waiting = False
 
     def key_of(self, row):
-        """What names a row, tuple of float."""
-        return tuple(float(row[name].item() if name in row.variables else row.attrs[name]) for name in self._key)
+        """What names a row."""
+        return key(*(row[name].item() if name in row.variables else row.attrs[name] for name in self._key))
 
     def add(self, row):
         """Put a row to the others, and write the file if that was not done just before."""
@@ -84,8 +89,9 @@ class Task(NamedTuple):
     ----------
     table : Table
     key : tuple of float
+        From `key`.
     make : callable
-        Without arguments; returns the row and a sentence on it. Where there are several processes it has to be picklable.
+        Without arguments; returns the row and a sentence on it. For several processes it has to be picklable.
     """
 
     table: Table

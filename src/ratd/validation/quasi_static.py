@@ -14,7 +14,7 @@ from ratd.base.statistics import median_of
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
 from ratd.experiments.spin_up.how import DRIVES, STEP
-from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.marks import BEFORE_MARKS, before_marks, disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -25,14 +25,10 @@ COLUMNS = {
     **GRAIN_COLUMNS,
     "outcome": ("", "how the run ended"),
     "steps": ("1", "time steps up to the end"),
-    "steps_mass_75": ("1", "time steps until a quarter of the mass was lost"),
     "smaller_steps": ("1", "parts of the run made again with smaller steps"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
-    "angular_momentum_first_loss": ("kg m2 s-1", "angular momentum in the record before the first loss"),
-    "axis_ratio_first_loss": ("1", "longest over shortest semi-axis in the record before the first loss"),
-    "angular_momentum_mass_75": ("kg m2 s-1", "angular momentum in the record before a quarter of the mass is lost"),
-    "axis_ratio_mass_75": ("1", "longest over shortest semi-axis in the record before a quarter of the mass is lost"),
+    **BEFORE_MARKS,
 }
 KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against each of its numbers", COLUMNS)
 PRODUCTION = "production"
@@ -95,20 +91,16 @@ def _spin(grain, vary, value):
         return row | {"outcome": "failed: " + str(error).split(":")[0]}
     marks = disruption(run)
     row |= {name: float(marks[name]) for name in MARKS}
-    for mark in ("first_loss", "mass_75"):
-        after = np.flatnonzero(run.omega.values >= row[f"omega_{mark}"])
-        if len(after):
-            before = max(after[0] - 1, 0)
-            row[f"angular_momentum_{mark}"] = float(run.angular_momentum[before])
-            row[f"axis_ratio_{mark}"] = float(run.axis_c[before] / run.axis_a[before])
-            if mark == "mass_75":
-                row["steps_mass_75"] = int(run.steps_so_far[after[0]])
-    return row | {
-        "outcome": run.attrs["end_reason"],
-        "steps": run.attrs["steps"],
-        "smaller_steps": run.attrs["smaller_steps"],
-        "cut_bound": run.attrs["cut_bound"],
-    }
+    return (
+        row
+        | before_marks(run, marks)
+        | {
+            "outcome": run.attrs["end_reason"],
+            "steps": run.attrs["steps"],
+            "smaller_steps": run.attrs["smaller_steps"],
+            "cut_bound": run.attrs["cut_bound"],
+        }
+    )
 
 
 def shifts(table, marks=MARKS, by=("type",)):

@@ -18,7 +18,7 @@ from ratd.experiments.collision import plan as plans
 from ratd.experiments.collision.run import at_rest
 from ratd.experiments.collision.stages import built, collided, law_from
 from ratd.pipeline.provenance import settings_hash, source_hash
-from ratd.pipeline.queue import Table, Task, command
+from ratd.pipeline.queue import Table, Task, command, key
 
 __all__ = ["CONFIG", "DATA", "main", "tasks"]
 
@@ -48,7 +48,7 @@ def tasks(plan, data):
     return [
         Task(
             tables[cell.law, cell.cluster],
-            (float(cell.sample), float(cell.velocity), float(cell.impact_parameter), float(rotation)),
+            key(cell.sample, cell.velocity, cell.impact_parameter, rotation),
             partial(_collision, plan, cell, rotation, source),
         )
         for cell, rotation in plan.queue()

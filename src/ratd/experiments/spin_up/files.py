@@ -132,6 +132,13 @@ _FIT = {
 
 
 _FRAGMENTS_RAGGED = ("fragment",)
+_OF_FRAGMENTS = {
+    **row_sizes(_FRAGMENTS_RAGGED),
+    **{
+        name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
+        for name, (units, meaning) in fragmentation.FRAGMENT_COLUMNS.items()
+    },
+}
 _FRAGMENTS = {
     **{
         name: Variable(
@@ -139,11 +146,13 @@ _FRAGMENTS = {
         )
         for name, (units, meaning) in fragmentation.COLUMNS.items()
     },
-    **row_sizes(_FRAGMENTS_RAGGED),
-    **{
-        name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
-        for name, (units, meaning) in fragmentation.FRAGMENT_COLUMNS.items()
-    },
+    **_OF_FRAGMENTS,
+}
+_SPUN_UP = {
+    **_DISRUPTION,
+    **over((ROW,), marks.BEFORE_MARKS, nan=True),
+    "source": Variable((ROW,), "str", "", "hash of the source that made the row"),
+    **_OF_FRAGMENTS,
 }
 
 
@@ -181,3 +190,4 @@ _register(
     places=("ensemble/{drive}/table3.nc",),
 )
 _register("fragments", "Fragments that leave grains", _FRAGMENTS, attributes=("drive",), ragged=_FRAGMENTS_RAGGED)
+_register("spun_up", "Grains that were spun up: marks, fragments", _SPUN_UP, ragged=_FRAGMENTS_RAGGED, **_RUN)

@@ -83,6 +83,17 @@ VARIABLES = {
 MARKS = ("omega_disr", "omega_stress_max", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 """The marks that a run may lack."""
 
+BEFORE_MARKS = {
+    f"{name}_{mark}": (units, f"{meaning} in the record before {event}")
+    for mark, event in (("first_loss", "the first loss of mass"), ("mass_75", "a quarter of the mass is lost"))
+    for name, (units, meaning) in {
+        "angular_momentum": ("kg m2 s-1", "angular momentum of the largest fragment"),
+        "axis_ratio": ("1", "longest over shortest semi-axis of the largest fragment"),
+        "steps": ("1", "time steps"),
+    }.items()
+}
+"""Units and meaning of every variable of `before_marks`."""
+
 
 def running_median(values, window=MEDIAN_WINDOW):
     """Median over a centred window that shrinks symmetrically towards both ends.
@@ -201,6 +212,32 @@ def disruption(run):
     marks.attrs["disruption_loss"] = LOSS
     marks.attrs["disruption_median_window"] = MEDIAN_WINDOW
     return marks
+
+
+def before_marks(run, marks):
+    """What the grain was just before it lost mass.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        From `ratd.spin_up`.
+    marks : xarray.Dataset
+        From `disruption`.
+
+    Returns
+    -------
+    dict of str to float
+        The values of `BEFORE_MARKS`; NaN for a mark that the run lacks.
+    """
+    values = dict.fromkeys(BEFORE_MARKS, np.nan)
+    for mark in ("first_loss", "mass_75"):
+        after = _first(run["omega"].values >= marks[f"omega_{mark}"].item())
+        if after is not None:
+            before = max(after - 1, 0)
+            values[f"angular_momentum_{mark}"] = run["angular_momentum"].values[before]
+            values[f"axis_ratio_{mark}"] = run["axis_c"].values[before] / run["axis_a"].values[before]
+            values[f"steps_{mark}"] = float(run["steps_so_far"].values[before])
+    return values
 
 
 def _peaks(mass_fraction, n_contacts, stress, initial_n_contacts, end):

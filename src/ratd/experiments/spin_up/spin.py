@@ -7,7 +7,7 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.jobs import duration
 
-__all__ = ["block", "told"]
+__all__ = ["arguments", "block", "told"]
 
 _HOW = ("drive", "stretch", "epsilon", "angular_acceleration", "timestep_factor", "max_steps", "records")
 
@@ -37,6 +37,11 @@ def told(say):
     return progress
 
 
+def arguments(settings):
+    """Arguments of `ratd.spin_up` in the settings of a job."""
+    return {name: settings[name] for name in _HOW}
+
+
 def block(job):
     """Spin up the grains of one block, one after another.
 
@@ -47,7 +52,7 @@ def block(job):
     file = io.read(job.input[0], "grains")
     of_seed = {grain.seed: grain for grain in grains(file)}
     settings = job.settings
-    how = {name: settings[name] for name in _HOW}
+    how = arguments(settings)
 
     def make(seed, checkpoint):
         every = settings["snapshot_every"] if seed in settings["snapshot_seeds"] else 0
