@@ -48,6 +48,7 @@ HOMES = {
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (
             "quasi_static",
+            "remnant",
             "convergence",
             "pull_off",
             "damping",

@@ -72,6 +72,7 @@ class Checks:
     def _pieces(self, check, own):
         return {
             "quasi_static": self._quasi_static,
+            "remnant": self._remnant,
             "convergence": self._convergence,
             "pull_off": self._pull_off,
             "damping": self._damping,
@@ -91,13 +92,19 @@ class Checks:
         pieces = {}
         for group in own:
             shared = {
-                key: value for key, value in group.items() if key not in ("materials", "types", "sizes_nm", "seeds")
+                key: value
+                for key, value in group.items()
+                if key not in ("materials", "types", "sizes_nm", "first", "seeds")
             }
             for material, kind, size in product(group["materials"], group["types"], group["sizes_nm"]):
-                for seed in range(group["seeds"]):
+                first = group.get("first", 0)
+                for seed in range(first, first + group["seeds"]):
                     name = f"{group['name']}_{material}_{kind}_{size}nm_{seed}"
                     pieces[name] = shared | {"material": material, "type": kind, "a_eff": size * NM, "seed": seed}
         return pieces
+
+    def _remnant(self, own):
+        return _each_grain(own["grains"], {key: own[key] for key in ("material", "drag", "every", "mass_left")})
 
     def _convergence(self, own):
         production = {"production_timestep_factor": self.config["production"]["timestep_factor"]}

@@ -28,7 +28,7 @@ COLUMNS = {
     "smaller_steps": ("1", "parts of the run made again with smaller steps"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
-    **BEFORE_MARKS,
+    **{name: about for name, about in BEFORE_MARKS.items() if name != "steps_first_loss"},
 }
 KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against each of its numbers", COLUMNS)
 PRODUCTION = "production"
@@ -125,8 +125,8 @@ def shifts(table, marks=MARKS, by=("type",)):
     found = []
     for (vary, value), part in table[table["vary"] != PRODUCTION].groupby(["vary", "value"]):
         for mark in marks:
-            ratio = part.set_index(grain)[mark] / own[mark].reindex(pd.MultiIndex.from_frame(part[grain]))
-            for key, ratios in ratio.groupby(list(by)):
+            ratio = part[mark].to_numpy() / own[mark].reindex(pd.MultiIndex.from_frame(part[grain])).to_numpy()
+            for key, ratios in part.assign(ratio=ratio).groupby(list(by), observed=True)["ratio"]:
                 names = dict(zip(by, key if isinstance(key, tuple) else (key,), strict=True))
                 found.append({"vary": vary, "value": value, **names, "mark": mark} | median_of(ratios))
     return pd.DataFrame(found)

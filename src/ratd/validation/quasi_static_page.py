@@ -1,0 +1,295 @@
+"""docs/quasi_static.md and its figures, drawn from the tables of two checks beside them.
+
+python -m ratd.validation.quasi_static_page collect RESULTS    take the tables, such as results/validation/full
+python -m ratd.validation.quasi_static_page redraw             figures and text, in seconds
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.errors import FileError, InputError
+from ratd.base.statistics import median_of
+from ratd.base.units import NM
+from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, save, styled
+from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.documents import Measured, fill
+from ratd.validation import remnant
+from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
+
+__all__ = ["collect", "findings", "main", "redraw"]
+
+DATA = Path("docs/quasi_static/data")
+FIGURES = Path("docs/quasi_static")
+TEMPLATE = Path("docs/templates/quasi_static.md")
+DOCUMENT = Path("docs/quasi_static.md")
+CHECKS = ("quasi_static", "remnant")
+TYPES = ("BA", "BAM1", "BAM2")
+CLASSES = {"100 to 200 nm": (0, 250), "300 nm": (250, 400), "450 nm": (400, 600)}
+"""Size classes [nm]."""
+SHOWN = {
+    ("stretch", 8e-14): "stretch 0.08 pm",
+    ("stretch", 4e-14): "stretch 0.04 pm",
+    ("stretch", 1e-14): "stretch 0.01 pm",
+    ("pace", 0.005): "pace 0.005",
+    ("drag", 0.3): "drag 0.3",
+    ("longest", 1e-9): "longest step 1 ns",
+    ("displacement", 1e-10): "step moves 0.1 nm",
+    ("moved", 1.0): "start moved 1 pm",
+    ("integrator", 1.0): "explicit step",
+    ("epsilon", 0.001): "no wait, ε 0.001",
+    ("drive", 1.0): "torque",
+}
+"""What is changed, with its name on the figure; the names of its slots begin with both."""
+ARMS = (("stretch", 1e-14), ("stretch", 5e-15), ("unrest", 0.005), ("pace", 0.005))
+FEWEST = 8
+"""Grains of a class of which a median is shown."""
+STEADY = tuple(pair for pair in SHOWN if pair[0] in ("stretch", "pace", "drag", "longest", "displacement"))
+"""Numbers of the scheme, on which the marks must not depend."""
+
+
+def collect(results, data=DATA):
+    """Copy the tables of a folder of results of the validation."""
+    for check in CHECKS:
+        source = Path(results, f"{check}.csv")
+        if not source.is_file():
+            raise FileError(f"{source}: is missing; `snakemake --cores 2 {source}` makes it")
+        with atomic(Path(data, source.name)) as temporary:
+            temporary.write_bytes(source.read_bytes())
+
+
+def redraw(folder=".", into=None):
+    """Write the document and its figures, into another folder where one is given."""
+    folder = Path(folder)
+    into = folder if into is None else Path(into)
+    table, looks = (pd.read_csv(folder / DATA / f"{check}.csv") for check in CHECKS)
+    save(strips(table), into / FIGURES / "numbers.png")
+    save(turning(looks), into / FIGURES / "remnant.png")
+    template = (folder / TEMPLATE).read_text(encoding="utf-8")
+    write_text(into / DOCUMENT, fill(template, findings(table, looks), str(TEMPLATE)))
+
+
+def findings(table, looks):
+    """Values of the slots.
+
+    Parameters
+    ----------
+    table, looks : pandas.DataFrame
+        Rows of the checks quasi_static and remnant.
+
+    Returns
+    -------
+    dict
+        Name of a slot -> number or text.
+    """
+    grain = ["material", "type", "a_eff", "seed"]
+    table = table.assign(a_eff=table["a_eff"].round(12))
+    own = table[table["vary"] == PRODUCTION].drop_duplicates(grain)
+    values = {
+        "grains": len(own),
+        "runs": len(table),
+        "failed": int(table["outcome"].str.startswith("failed").sum()),
+        "smaller_steps": int((table["smaller_steps"] > 0).sum()),
+    }
+    for kind in TYPES:
+        values[f"large {kind}"] = int(((own["type"] == kind) & (own["a_eff"] > 400 * NM)).sum())
+    every = shifts(table)
+    for row in every.to_dict("records"):
+        if (row["vary"], row["value"]) in SHOWN:
+            values[f"{row['vary']} {row['value']:g} {row['type']} {row['mark']}"] = _text(row)
+    size_class = pd.cut(table["a_eff"] / NM, [0, *(high for _, high in CLASSES.values())], labels=list(CLASSES))
+    table = table.assign(size_class=size_class)
+    fine = pd.concat(
+        [shifts(table, by=("type", "size_class")), shifts(table.assign(type="all"), by=("type", "size_class"))]
+    )
+    fine = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) & (fine["n"] >= FEWEST)]
+    for mark in MARKS:
+        part = fine[fine["mark"] == mark]
+        off = (part["median"] - 1.0).abs()
+        worst = part.loc[off.idxmax()]
+        values[f"worst {mark}"] = Measured(off.max(), worst["error"])
+        values[f"worst {mark} where"] = (
+            f"{worst['type']}, {worst['size_class']}, {SHOWN[worst['vary'], worst['value']]}"
+        )
+    values["steady"] = (
+        "do not depend"
+        if max(values["worst omega_first_loss"].value, values["worst omega_mass_75"].value) < 0.01
+        else "depend"
+    )
+    values |= _arms(table, own) | _steps(own) | _torque(table, own) | _slow(table, own) | _remnants(looks)
+    return values
+
+
+def _text(row):
+    """Median of ratios with its error, and where two thirds of them lie."""
+    return f"{row['median']:.4f} ± {row['error']:.4f} ({row['low']:.3f}–{row['high']:.3f})"
+
+
+def _steps(own):
+    """Where the steps go."""
+    values = {}
+    for kind, part in own.groupby("type"):
+        large = part[part["a_eff"] > 400 * NM]
+        values[f"steps {kind}"] = f"{large['steps'].median():,.0f}".replace(",", " ")
+        values[f"steps until quarter {kind}"] = (part["steps_mass_75"] / part["steps"]).median()
+    return values
+
+
+def _paired(table, own, vary, value):
+    """Rows of one change beside those of production of the same grain, in the same order."""
+    grain = ["material", "type", "a_eff", "seed"]
+    part = table[(table["vary"] == vary) & np.isclose(table["value"], value, atol=0.0)].drop_duplicates(grain)
+    return part.merge(own, on=grain, suffixes=("", "_own"))
+
+
+def _arms(table, own):
+    """BA grains of 300 nm, the hard case."""
+    values = {}
+    for vary, value in ARMS:
+        pairs = _paired(table, own, vary, value)
+        pairs = pairs[(pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)]
+        for mark in ("first_loss", "mass_75"):
+            ratios = pairs[f"omega_{mark}"] / pairs[f"omega_{mark}_own"]
+            values[f"arms.{vary} {value:g} {mark}"] = _text(median_of(ratios))
+        values["arms.grains"] = max(values.get("arms.grains", 0), len(pairs))
+    return values
+
+
+def _torque(table, own):
+    """omega, L and shape under a torque over those under a prescribed omega."""
+    pairs = _paired(table, own, "drive", 1.0)
+    values = {"torque grains": len(pairs)}
+    for kind, part in pairs.groupby("type"):
+        for mark in ("first_loss", "mass_75"):
+            omega, momentum, ratio = (
+                part[f"{name}_{mark}"] / part[f"{name}_{mark}_own"]
+                for name in ("omega", "angular_momentum", "axis_ratio")
+            )
+            for name, ratios in (("omega", omega), ("L", momentum), ("shape", ratio)):
+                values[f"torque {kind} {mark} {name}"] = _text(median_of(ratios))
+            values[f"torque {kind} {mark} higher"] = (omega > 1.02).mean()
+            values[f"torque {kind} {mark} lower"] = (omega < 0.98).mean()
+    omega = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
+    found = median_of(omega)
+    values["torque change"] = Measured(abs(found["median"] - 1.0), found["error"])
+    values["torque mean"] = np.exp(np.log(omega).mean())
+    values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
+    values["torque higher"] = (omega > 1.02).mean()
+    values["torque lower"] = (omega < 0.98).mean()
+    chaos = _paired(table, own, "moved", 1.0)
+    moved = chaos["omega_mass_75"] / chaos["omega_mass_75_own"]
+    values["moved differs"] = ((moved - 1.0).abs() > 0.02).mean()
+    return values
+
+
+def _slow(table, own):
+    """Beside spin-ups that do not wait and the explicit step, of all types together."""
+    values = {}
+    for vary, value in (("integrator", 1.0), ("epsilon", 0.004), ("epsilon", 0.001)):
+        pairs = _paired(table, own, vary, value)
+        for mark in MARKS:
+            values[f"{vary} {value:g} {mark}"] = _text(median_of(pairs[mark] / pairs[f"{mark}_own"]))
+        values[f"{vary} {value:g} grains"] = len(pairs)
+        values[f"{vary} {value:g} steps"] = (pairs["steps"] / pairs["steps_own"]).median()
+    return values
+
+
+def _remnants(looks):
+    """How far remnants stand off their axis, and how soon that is over."""
+    events = remnant.events(looks)
+    values = {"remnant grains": len(looks.groupby(["type", "seed"]))}
+    for drag, part in events.groupby("drag"):
+        seen = part[part["turns"].notna() & (part["tilt"] > 1.0)]
+        values[f"remnant {drag:g} events"] = len(part)
+        values[f"remnant {drag:g} seen"] = len(seen)
+        values[f"remnant {drag:g} tilt"] = part["tilt"].median()
+        values[f"remnant {drag:g} greatest"] = part["tilt"].max()
+        values[f"remnant {drag:g} turns"] = seen["turns"].median()
+        values[f"remnant {drag:g} turns high"] = seen["turns"].quantile(0.84)
+    quiet = looks[(looks["drag"] == 1.0) & (looks["roundness"] < 0.95)]
+    values["remnant tilt at rest"] = quiet["tilt"].median()
+    return values
+
+
+@styled
+def strips(table):
+    """Figure: every grain with one thing changed, over itself, for the loss of a quarter of the mass."""
+    figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, "The same grains with one thing changed (bars: medians)")
+    axes = figure.subplots()
+    table = table.assign(a_eff=table["a_eff"].round(12))
+    own = table[table["vary"] == PRODUCTION].drop_duplicates(["material", "type", "a_eff", "seed"])
+    names = list(SHOWN.values())
+    for place, (vary, value) in enumerate(SHOWN):
+        pairs = _paired(table, own, vary, value)
+        ratios = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
+        for shift, kind in zip((-0.24, 0.0, 0.24), TYPES, strict=True):
+            part = np.sort(ratios[pairs["type"] == kind].dropna())
+            height = place + shift + 0.09 * np.sin(2.4 * np.arange(len(part)))
+            axes.plot(
+                100 * (part - 1), height, TYPE_MARKER[kind], color=TYPE_COLOUR[kind], markersize=2.5, alpha=0.6,
+                linestyle="none", label=kind if place == 0 else None, clip_on=False,
+            )  # fmt: skip
+            if len(part):
+                axes.plot(100 * (np.median(part) - 1), place + shift, "|", color="black", markersize=9)
+    axes.axvline(0.0, color=GREY, linewidth=0.6, zorder=0)
+    axes.set_xscale("symlog", linthresh=1.0)
+    ticks = [-50, -10, -1, -0.5, 0, 0.5, 1, 10, 50]
+    axes.set_xticks(ticks, [f"{tick:+g}" if tick else "0" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(-60, 90)
+    axes.set_yticks(range(len(names)), names)
+    axes.invert_yaxis()
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel("change of $\\omega$ at which a quarter of the mass is lost [%]; linear between −1 and 1")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def turning(looks):
+    """Figure: one grain that loses mass, and how far its axis of greatest inertia stands off."""
+    key = ["type", "seed"]
+    events = remnant.events(looks)
+    seen = events[(events["drag"] == 1.0) & events["turns"].notna() & (events["tilt"] > 10.0)]
+    counts = (seen if len(seen) else events).groupby(key).size()
+    kind, seed = counts.idxmax()
+    figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, f"What is left of a {kind} grain turns into its own axis")
+    above, below = figure.subplots(2, 1, sharex=True)
+    for drag, colour in ((1.0, TYPE_COLOUR["BAM2"]), (0.3, TYPE_COLOUR["BA"])):
+        run = looks[(looks["type"] == kind) & (looks["seed"] == seed) & (looks["drag"] == drag)]
+        if not len(run):
+            continue
+        above.plot(
+            run["turns"], 100 * run["mass_fraction"], color=colour, drawstyle="steps-post", label=f"c = {drag:g}"
+        )
+        below.plot(run["turns"], run["tilt"], color=colour)
+    above.set_ylabel("mass left [%]")
+    above.set_ylim(0, 104)
+    below.set_ylabel("tilt [°]")
+    below.set_ylim(0, None)
+    below.set_xlabel("turns since the first loss of mass")
+    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return figure
+
+
+def main(arguments):
+    """The command line; returns the exit code."""
+    try:
+        match arguments:
+            case ["collect", results]:
+                collect(results)
+            case ["redraw"]:
+                redraw()
+            case _:
+                print(__doc__.strip())
+                return 2
+    except (InputError, FileError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
