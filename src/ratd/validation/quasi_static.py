@@ -93,7 +93,7 @@ def _spin(grain, vary, value):
     row |= {name: float(marks[name]) for name in MARKS}
     return (
         row
-        | before_marks(run, marks)
+        | {name: value for name, value in before_marks(run, marks).items() if name in COLUMNS}
         | {
             "outcome": run.attrs["end_reason"],
             "steps": run.attrs["steps"],
