@@ -5,17 +5,18 @@ import sys
 from contextlib import nullcontext
 from pathlib import Path
 
-from benchmarks import agreement, cost, kernel, machine, peer, pipeline, profile, report, scaling
+from benchmarks import agreement, answer, cost, kernel, machine, peer, pipeline, profile, report, scaling
 from benchmarks.before import Before
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
 from ratd.experiments.spin_up import plan as spin_up
 from ratd.pipeline import config
+from ratd.validation import peer_lammps
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("profile", "agreement")
+ON_REQUEST = ("profile", "agreement", "answer")
 """Parts that are done only when they are named."""
 
 PROFILED = ("150", "300")
@@ -186,6 +187,12 @@ def _profile(arguments, out, about):
     profile.measure(out, plan, sizes=plan.sizes if arguments.quick else PROFILED, about=about, say=say)
 
 
+def _answer(arguments, out, about):
+    peer_lammps.load()  # a sentence where it is missing, before anything is timed
+    size, repeats = (50e-9, 1) if arguments.quick else (200e-9, 5)
+    answer.measure(out, size=size, repeats=repeats, about=about, say=say)
+
+
 def _agreement(arguments, out, about):
     agreement.main(arguments.before, 3 if arguments.quick else arguments.grains, ROOT, say)
 
@@ -197,6 +204,7 @@ _MEASURE = {
     "pipeline": _pipeline,
     "profile": _profile,
     "agreement": _agreement,
+    "answer": _answer,
 }
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchmarks.answer import SLOW, ratios
 from benchmarks.cost import SHORT
 from benchmarks.figures import draw_cost, draw_kernel, draw_scaling
 from benchmarks.goals import goals
@@ -23,7 +24,7 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_goals_section, _kernel, _cost, _profile, _scaling, _pipeline)]
+    parts += [section(out) for section in (_goals_section, _kernel, _answer, _cost, _profile, _scaling, _pipeline)]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -206,6 +207,33 @@ def _cost(out):
     words.append("Every cell, with its steps and microseconds per step, is in `cost_cells.csv`.\n\n![cost](cost.png)\n")
     draw_cost(cells, out / "cost.png")
     return "\n".join(words)
+
+
+def _answer(out):
+    data = frame(out, "answer")
+    if data is None:
+        return ""
+    found = ratios(data)
+    rows = []
+    for kind, part in data.groupby("type", sort=False):
+        own = part[part["code"] == "ratd"].iloc[0]
+        for row in part.itertuples():
+            way = "waits" if row.code == "ratd" else f"{row.epsilon:.3g}"
+            seconds = (
+                f"{row.seconds:.2f} ({row.least:.2f} - {row.greatest:.2f})"
+                if row.code == "ratd"
+                else f"{row.seconds:.0f}"
+            )
+            rows.append([kind, row.code, way, f"{row.omega:.3e}", f"{row.omega / own['omega'] - 1:+.1%}", seconds, ""])
+        rows[-1][-1] = f"{found[kind]:.0f}"
+    size, monomers = data["size_nm"].iloc[0], ", ".join(str(n) for n in data["monomers"].unique())
+    about = (
+        f"omega at which a grain of {size:g} nm ({monomers} monomers) has lost a quarter of its mass, and the wall "
+        "time from the call to the answer. LAMMPS drives the same grain in a frame that turns, without waiting; the "
+        f"last column is its time at epsilon = {SLOW:g}, projected from its slowest run here, over that of ratd.\n"
+    )
+    head = ["type", "code", "epsilon", "omega [rad/s]", "against ratd", "seconds", "LAMMPS over ratd"]
+    return "\n".join(["## Time to an answer\n", _where(data), about, table(head, rows)])
 
 
 def _profile(out):

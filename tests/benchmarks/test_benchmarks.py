@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from ratd.base.errors import FileError
@@ -294,3 +295,17 @@ def test_lammps_holds_the_contacts_of_the_aggregate(benchmarks):
     timing = peer.run(peer.find(), grain, omega=1e6, timestep=1e-13, steps=20_000, warm=5, classes=2)
     assert timing.contacts == grain.n_contacts
     assert timing.seconds > 0.0 and timing.classes == 2
+
+
+def test_time_to_an_answer_of_lammps_is_projected_to_a_slow_spin_up():
+    from benchmarks import answer
+
+    table = pd.DataFrame(
+        {
+            "type": ["BA"] * 3,
+            "code": ["ratd", "LAMMPS", "LAMMPS"],
+            "epsilon": [np.nan, 0.02, 0.1],
+            "seconds": [0.5, 40.0, 9.0],
+        }
+    )
+    assert answer.ratios(table) == {"BA": pytest.approx(40.0 * 20 / 0.5)}
