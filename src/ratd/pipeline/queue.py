@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ratd.base.errors import FileError, InputError
 from ratd.pipeline import blocks, io
+from ratd.pipeline.kinds import kind_of
 from ratd.pipeline.partial import locked
 from ratd.pipeline.provenance import canonical, settings_hash
 
@@ -67,7 +68,12 @@ class Table:
         return key(*(row[name].item() if name in row.variables else row.attrs[name] for name in self._key))
 
     def add(self, row):
-        """Put a row to the others, and write the file if that was not done just before."""
+        """Put a row to the others, and write the file if that was not done just before.
+
+        Of its attributes those stay that a file of the kind has, so that it is like one that was read.
+        """
+        kept = {*kind_of(self._kind).attributes, *kind_of(self._kind).of_row}
+        row.attrs = {name: value for name, value in row.attrs.items() if name in kept}
         self.rows.append(row)
         self.keys.add(self.key_of(row))
         self._waiting = True

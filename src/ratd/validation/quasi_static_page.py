@@ -57,7 +57,7 @@ def collect(results, data=DATA):
         if not source.is_file():
             raise FileError(f"{source}: is missing; `snakemake --cores 2 {source}` makes it")
         with atomic(Path(data, source.name)) as temporary:
-            temporary.write_bytes(source.read_bytes())
+            pd.read_csv(source).to_csv(temporary, index=False, float_format="%.7g")
 
 
 def redraw(folder=".", into=None):

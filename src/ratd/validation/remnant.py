@@ -114,7 +114,7 @@ def events(table):
     -------
     pandas.DataFrame
         The columns of the grain, drag, mass_fraction (after the loss), tilt (greatest before the next event [degree]),
-        turns (from there until it has fallen to 1/e of that; NaN where the next event comes first), end (tilt at the
+        turns (from there until it stays below 1/e of that; NaN where the next event comes first), end (tilt at the
         last look before the next event [degree]), roundness.
     """
     found = []
@@ -124,13 +124,14 @@ def events(table):
         starts = np.flatnonzero(-np.diff(mass) >= LOSS) + 1
         for start, end in zip(starts, [*starts[1:], len(run)], strict=True):
             top = start + int(np.argmax(tilt[start:end]))
-            fallen = np.flatnonzero(tilt[top:end] <= tilt[top] / np.e)
+            # it may swing: over when it stays below
+            quiet = top + int(np.flatnonzero(tilt[top:end] > tilt[top] / np.e)[-1]) + 1
             found.append(
                 dict(zip(keys, key, strict=True))
                 | {
                     "mass_fraction": mass[start],
                     "tilt": tilt[top],
-                    "turns": turns[top + fallen[0]] - turns[top] if len(fallen) else np.nan,
+                    "turns": turns[quiet] - turns[top] if quiet < end else np.nan,
                     "end": tilt[end - 1],
                     "roundness": run["roundness"].to_numpy()[start],
                 }

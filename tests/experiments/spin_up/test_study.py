@@ -1,0 +1,90 @@
+"""The queue of spin-ups: it goes on where it was, whatever the order and the number of processes."""
+
+import numpy as np
+import pytest
+
+from ratd.base.errors import InputError
+from ratd.base.materials import MATERIALS
+from ratd.experiments.spin_up import study
+from ratd.experiments.spin_up.plan import Plan, load
+from ratd.pipeline import blocks, io, queue
+
+
+def plan(folder, **own):
+    """Two grains each of two types, small, under one drive."""
+    config = {
+        "materials": ["q-S"],
+        "types": ["BA", "BAM2"],
+        "sizes_nm": [80],
+        "seeds": {"first": 0, "number": 2},
+        "block_size": 1,
+        "growth": {
+            "median_nm": 20, "sigma_ln": 0.844, "smallest_nm": 10, "largest_nm": 100, "migration": "random"
+        },
+        "drives": ["prescribed"],
+        "run": {
+            "stretch": 2e-13, "epsilon": None, "angular_acceleration": None, "timestep_factor": 0.125, "records": 50,
+            "max_steps": None,
+        },
+        "snapshots": {"every": 10, "grains": []},
+    }  # fmt: skip
+    return Plan(config | own, MATERIALS, str(folder / "results"))
+
+
+def rows(path):
+    return blocks.rows(io.read(path, "spun_up"), "spun_up")
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+
+    def stop(text):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        queue.work(study.tasks(plan(folder), folder), say=stop)
+    said = []
+    assert queue.work(study.tasks(plan(folder), folder), say=said.append) == 0
+    assert len(said) == 3
+    return folder
+
+
+def test_one_seed_of_all_cells_comes_before_the_next(tmp_path):
+    wanted = study.tasks(plan(tmp_path), tmp_path)
+    assert [(task.table.path.name, task.key[1]) for task in wanted] == [
+        (f"q-S_{kind}.nc", seed) for seed in (0.0, 1.0) for kind in ("BA", "BAM2")
+    ]
+
+
+def test_rows_hold_marks_and_fragments(done):
+    for kind in ("BA", "BAM2"):
+        first, second = rows(done / "prescribed" / f"q-S_{kind}.nc")
+        assert [first.attrs["seed"], second.attrs["seed"]] == [0, 1]
+        for row in (first, second):
+            assert 0.0 < row["omega_first_loss"].item() <= row["omega_mass_75"].item()
+            assert row["steps_first_loss"].item() <= row["steps_mass_75"].item() < row.attrs["steps"]
+            assert row["axis_ratio_first_loss"].item() > 1.0
+            assert row["fragment_mass"].sum() <= row.attrs["initial_mass"] * (1 + 1e-9) and row.sizes["fragment"]
+            assert len(row["source"].item()) == 16
+
+
+def test_what_was_stopped_has_the_bytes_of_two_processes_at_work(done, tmp_path):
+    assert queue.work(study.tasks(plan(tmp_path), tmp_path), say=lambda text: None, processes=2) == 0
+    for kind in ("BA", "BAM2"):
+        name = f"prescribed/q-S_{kind}.nc"
+        assert (tmp_path / name).read_bytes() == (done / name).read_bytes()
+
+
+def test_rows_of_another_spin_up_are_refused(done):
+    other = plan(done)
+    other.config["run"]["stretch"] = 1e-13
+    with pytest.raises(InputError, match="q-S_BA.nc: holds rows with other settings than the config has"):
+        study.tasks(other, done)
+
+
+def test_the_config_of_the_study_is_the_whole_paper(tmp_path):
+    wanted = study.tasks(load(*study.CONFIG), tmp_path)
+    drives = np.array([task.table.path.parent.name for task in wanted])
+    assert np.sum(drives == "prescribed") == 2970 and np.sum(drives == "literal") == 495
+    assert len({(task.table.path, task.key) for task in wanted}) == len(wanted)
