@@ -44,8 +44,8 @@ SHOWN = {
 }
 """What is changed, with its name on the figure; the names of its slots begin with both."""
 ARMS = (("stretch", 1e-14), ("stretch", 5e-15), ("unrest", 0.005), ("pace", 0.005))
-FEWEST = 8
-"""Grains of a class of which a median is shown."""
+KNOWN = 0.01
+"""Error of the median of a class that tells something of 1 %."""
 STEADY = tuple(pair for pair in SHOWN if pair[0] in ("stretch", "pace", "drag", "longest", "displacement"))
 """Numbers of the scheme, on which the marks must not depend."""
 
@@ -104,7 +104,8 @@ def findings(table, looks):
     fine = pd.concat(
         [shifts(table, by=("type", "size_class")), shifts(table.assign(type="all"), by=("type", "size_class"))]
     )
-    fine = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) & (fine["n"] >= FEWEST)]
+    fine = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) & (fine["error"] < KNOWN)]
+    values["classes"] = len(fine[fine["mark"] == "omega_mass_75"])
     for mark in MARKS:
         part = fine[fine["mark"] == mark]
         off = (part["median"] - 1.0).abs()
