@@ -17,6 +17,6 @@ profile  part (e): where the steps of a spin-up go, only where it is asked for b
 agreement  the same grains spun up by this and another checkout, only where it is asked for by its name
 tables   CSV files of the parts
 goals    what was aimed at, beside what was found
-report   text and tables of the README, from the CSV files
+report   text and tables of benchmarks/results/README.md and docs/speed.md, from the CSV files
 figures  what is drawn in it
 """

@@ -105,7 +105,7 @@ def _measure(arguments):
         return 0
     report.write(out)
     if arguments.out is None:
-        report.quote(out, ROOT / "README.md")
+        report.quote(out, ROOT / "docs" / "speed.md")
     say(f"written: {out / 'README.md'}")
     return 3 if False in complete else 0
 

@@ -21,8 +21,8 @@ from ratd.validation.lammps import MARKS, InLammps, driven, threshold
 
 MATERIAL, SEED = "q-S", 1
 STEP = 1.02
-ROTATIONS = (0.03125, 0.125)
-"""For how long each omega is held by LAMMPS, the last one counts."""
+ROTATIONS = (0.03125,)
+"""For how long each omega is held by LAMMPS, in rotations; the last one counts."""
 SLOW = 0.001
 TYPES = ("BA", "BAM1", "BAM2")
 

@@ -12,7 +12,7 @@ from ratd.base.errors import FileError
 from ratd.pipeline.io import atomic
 
 MARKS = ("<!-- speed: written by python -m benchmarks -->\n", "<!-- end of speed -->\n")
-"""Between these lines the README of the repository quotes the goals."""
+"""Between these lines docs/speed.md quotes the goals."""
 
 
 def write(out):
@@ -29,26 +29,26 @@ def write(out):
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
 
-def quote(out, readme):
-    """Put the goals, and the machine, into a README between `MARKS`; the rest of it stays.
+def quote(out, page):
+    """Put the goals, and the machine, into a page between `MARKS`; the rest of it stays.
 
     Parameters
     ----------
     out : pathlib.Path
         Folder of the results.
-    readme : pathlib.Path
+    page : pathlib.Path
 
     Raises
     ------
     FileError
-        If the README lacks the marks.
+        If the page lacks the marks.
     """
-    text = readme.read_text(encoding="utf-8")
+    text = page.read_text(encoding="utf-8")
     if not all(mark in text for mark in MARKS):
-        raise FileError(f"{readme}: has no lines {MARKS[0].strip()!r} and {MARKS[1].strip()!r} to write between")
+        raise FileError(f"{page}: has no lines {MARKS[0].strip()!r} and {MARKS[1].strip()!r} to write between")
     before, rest = text.split(MARKS[0])
     after = rest.split(MARKS[1])[1]
-    with atomic(readme) as part:
+    with atomic(page) as part:
         part.write_text(f"{before}{MARKS[0]}\n{_goals(out)}\n{MARKS[1]}{after}", encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""The Python of README.md, as a reader would type it."""
+"""The Python of README.md and docs/using.md, as a reader would type it."""
 
 from pathlib import Path
 
@@ -8,12 +8,12 @@ import pytest
 
 import ratd
 
-README = Path(__file__).parents[1] / "README.md"
+USING = Path(__file__).parents[1] / "docs" / "using.md"
 
 
 def code(section, start, end):
-    """Lines of code of a section of the README between two texts."""
-    text = README.read_text(encoding="utf-8").split(f"\n## {section}\n")[1].split(start)[1].split(end)[0]
+    """Lines of code of a section of the page between two texts."""
+    text = USING.read_text(encoding="utf-8").split(f"\n## {section}\n")[1].split(start)[1].split(end)[0]
     return [line[4:] for line in text.splitlines() if line.startswith("    ")]
 
 
@@ -30,7 +30,7 @@ def test_one_grain_and_two_that_meet():
     assert line.get_xdata() == pytest.approx(names["run"]["omega"].values)
     assert names["own"].n_contacts == own.n_contacts
 
-    exec("\n".join(code("From Python", "at 10 m/s:", "| to add")), names)
+    exec("\n".join(code("From Python", "at 10 m/s:", "From files")), names)
     meeting = names["run"]
     assert meeting["n_pieces"][0] == 2
     assert abs(meeting["residual"][-1]) < 0.03 * meeting["kinetic_translation"][0]
