@@ -13,8 +13,12 @@ import ratd
 from files import grains_file, make_grain
 from ratd.aggregates.particles import write_particles
 from ratd.command import COMMANDS, SHOWN, main
+from ratd.experiments.compression.command import pressure_at
+from ratd.experiments.compression.files import runs
 from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.spin_up import command, run_files
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
 from ratd.pipeline.kinds import HOMES
 
 FAST = ("--material", "q-S", "--epsilon", "1", "--starts", "3")
@@ -46,6 +50,45 @@ def test_an_aggregate_is_spun_up_from_its_file(chain):
     again = run("show", chain.with_name("chain_spin_up.nc"), "--out", chain.with_name("again"))
     assert again.exit_code == 0 and said[0] in again.stdout
     assert chain.with_name("again.png").exists()
+
+
+def test_a_cluster_is_compressed_from_its_file(tmp_path):
+    cluster = tmp_path / "cluster.xyz"
+    write_particles(ratd.grow_bcca(32, material="ice", seed=1), cluster)
+    how = ("--material", "ice", "--strain-rate", "1e-4", "--until-phi", "0.25", "--starts", "2")
+    with pytest.warns(UserWarning, match="inertia"):
+        done = run("compress", cluster, *how)
+    assert done.exit_code == 0, done.output
+    target = cluster.with_name("cluster_compressed.nc")
+    found = runs(io.read(target, "compression"))
+    assert [round(each["phi"].values[-1], 3) for each in found] == [0.25, 0.25]
+    pressures = [pressure_at(each, 0.2) for each in found]
+    said = re.search(r"P at phi 0.2 = (\S+) ± (\S+) Pa: (\S+) P_0 phi³", done.stdout)
+    assert float(said[1]) == pytest.approx(np.mean(pressures), rel=1e-3)
+    over = np.mean(pressures) / (found[0].attrs["rolling_pressure"] * 0.2**3)
+    assert float(said[3]) == pytest.approx(over, rel=0.01)
+    assert "phi 0.3" not in done.stdout  # it was not reached
+    assert cluster.with_name("cluster_compressed.png").read_bytes()[1:4] == b"PNG"
+    again = run("show", target, "--out", cluster.with_name("again"))
+    assert again.exit_code == 0 and said[0] in again.stdout
+
+
+def test_two_clusters_collide_from_their_files(tmp_path):
+    one, other = tmp_path / "one.xyz", tmp_path / "other.xyz"
+    for path, number in ((one, 12), (other, 8)):
+        write_particles(ratd.build_cluster(np.full(number, 3e-7), 9e-7, "silica", seed=1), path)
+    how = ("--material", "silica", "--velocity", "20", "--duration", "2e-7", "--starts", "2")
+    done = run("collide", one, "--other", other, *how)
+    assert done.exit_code == 0, done.output
+    found = rows(io.read(one.with_name("one_collided.nc"), "collisions"), "collisions")
+    assert [row["n_monomers"].item() for row in found] == [20, 20] and found[0]["velocity"].item() == 20.0
+    said = re.search(r"N_s = (\S+) ± (\S+): fragmentation", done.stdout)
+    assert float(said[1]) == pytest.approx(np.mean([row["N_s"].item() for row in found]), rel=1e-3, abs=1e-4)
+    assert one.with_name("one_collided.png").read_bytes()[1:4] == b"PNG"
+    assert one.with_name("one_collided.html").read_text().startswith("<!doctype html>")
+    # the same rotations of one with itself are other collisions
+    done = run("collide", one, *how, "--law", "jkr")
+    assert done.exit_code == 0 and "24 spheres at 20 m/s" in done.stdout
 
 
 def test_a_stopped_command_goes_on_with_the_same_answer(chain, monkeypatch):

@@ -1,6 +1,8 @@
 """The command line: one aggregate from a file, one answer.
 
     python -m ratd spin-up grain.xyz --material q-S
+    python -m ratd compress cluster.xyz --material ice
+    python -m ratd collide cluster.xyz --material silica --velocity 10
     python -m ratd show grain.xyz
 
 Each experiment has a module with its subcommand. To add one is a line in `COMMANDS`; what `show` makes of its files is
@@ -19,12 +21,16 @@ __all__ = ["main"]
 
 COMMANDS = {
     "spin-up": "ratd.experiments.spin_up.command",
+    "compress": "ratd.experiments.compression.command",
+    "collide": "ratd.experiments.collision.command",
     "show": "ratd.command.show",
 }
 """Name of a subcommand -> the module whose `command` it is."""
 
 SHOWN = {
     "spinup": "ratd.experiments.spin_up.command",
+    "compression": "ratd.experiments.compression.command",
+    "collisions": "ratd.experiments.collision.command",
     "grains": "ratd.command.show",
 }
 """Kind of file (see `ratd.pipeline.kinds`) -> the module whose ``show(path, out)`` makes pictures and lines of it."""

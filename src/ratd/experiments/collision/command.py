@@ -1,0 +1,123 @@
+"""``python -m ratd collide``: what is left of an aggregate from a file that hits itself, or another one."""
+
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+
+from ratd.aggregates.particles import read_particles
+from ratd.base.materials import MATERIALS
+from ratd.base.words import plural
+from ratd.experiments.collision.figures.snapshots import PANELS, picture, positions
+from ratd.experiments.collision.files import collision_row
+from ratd.experiments.collision.run import DURATION, at_rest, collide
+from ratd.experiments.command import aggregate_options, answer, part_done, several
+from ratd.pictures.collision_page import collision_page
+from ratd.pictures.style import save
+from ratd.pipeline import io
+from ratd.pipeline.atomic import write_text
+from ratd.pipeline.blocks import rows
+from ratd.pipeline.provenance import provenance, source_hash
+
+__all__ = ["command", "show"]
+
+SNAPSHOTS = 5
+"""Records from one snapshot of the first rotation to the next."""
+
+
+@click.command("collide")
+@aggregate_options
+@click.option("--velocity", required=True, type=click.FloatRange(0, 1e4, min_open=True), help="Of the collision [m/s].")
+@click.option("--other", type=click.Path(path_type=Path), help="File with the other aggregate.  [default: the same]")
+@click.option(
+    "--impact-parameter", default=0.0, show_default=True, type=click.FloatRange(0, 1),
+    help="In the sum of the radii of both.",
+)  # fmt: skip
+@click.option("--law", default="dmt", show_default=True, type=click.Choice(["dmt", "jkr"]), help="Of the contacts.")
+@click.option(
+    "--duration", default=DURATION, show_default=True, type=click.FloatRange(0, 1e-3, min_open=True), help="[s]"
+)
+def command(file, material, unit, starts, out, velocity, other, impact_parameter, law, duration):
+    """Shoot an aggregate at itself, or at another one.
+
+    Each start is another rotation of both. The answer is the mean over them with their standard deviation. The
+    collisions stand in OUT.nc, the first one as pictures in OUT.png and in 3D in OUT.html. After Ctrl-C the same
+    command goes on.
+    """
+    files = [file] if other is None else [file, other]
+    grains = [read_particles(path, unit=unit).grain(material) for path in files]
+    out = file.with_name(f"{file.stem}_collided") if out is None else out
+    how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
+    source = source_hash(modules=["ratd.experiments.collision.run"])
+    made_with = provenance(source, {"material": material, "unit": unit, **how}, files)
+    resting = []
+
+    def make(start, checkpoint, progress):
+        begun = time.monotonic()
+        if not resting:
+            resting.extend(at_rest(grain, law) for grain in grains)
+        run = collide(
+            resting[0],
+            resting[-1],
+            seed=start,
+            relaxed=True,
+            snapshot_every=SNAPSHOTS if start == 0 else 0,
+            checkpoint=checkpoint,
+            progress=lambda now, pieces, energy, to_go: progress(part_done(begun, to_go)),
+            **how,
+        )
+        return collision_row(
+            run,
+            sample=0,
+            law=law,
+            cluster=file.stem,
+            friction=law,
+            damping_time=0.0,
+            second_contact=0.0,
+            source=source,
+        )
+
+    target = out.with_name(f"{out.name}.nc")
+    several(target, "collisions", MATERIALS[material], made_with, starts, make)
+    click.echo("\n".join([*show(target, out), f"{target} written"]))
+
+
+def show(path, out):
+    """Pictures, page and answers of a file of collisions.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    out : Path
+        Stem of the files to write.
+
+    Returns
+    -------
+    list of str
+        What to say.
+    """
+    found = rows(io.read(path, "collisions"), "collisions")
+    n = found[0]["n_monomers"].item()
+    lines = [
+        f"{plural(len(found), 'rotation')} of {plural(n, 'sphere')} at {found[0]['velocity'].item():g} m/s, mean ± "
+        "standard deviation:"
+    ]
+    for name, text in (
+        ("N_s", "fragmentation, 1 less the mass of the two largest pieces over that of all"),
+        ("X", "agglomeration: 1 where the largest piece has all the mass, 0 where the two largest are alike"),
+        ("n_pieces", "pieces, single spheres included"),
+    ):
+        lines.append(f"{answer(name, [row[name].item() for row in found], '')}: {text}".replace(" :", ":"))
+    for row in found:
+        if row.sizes.get("snapshot", 0):
+            figure, page = Path(f"{out}.png"), Path(f"{out}.html")
+            times, place, piece = positions(row)
+            save(picture(row, times[-1] / (PANELS - 1)), figure)
+            origin = (np.arange(place.shape[1]) >= place.shape[1] // 2).astype(int)
+            title = f"{row['cluster'].item()}, {row['velocity'].item():g} m/s"
+            write_text(page, collision_page(times, place, row["radius"].values, piece, origin, title))
+            lines += [f"{figure} written", f"{page} written"]
+            break
+    return lines

@@ -1,0 +1,121 @@
+"""``python -m ratd compress``: the pressure that it takes to compress an aggregate from a file."""
+
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+
+from ratd.aggregates.grain import Grain
+from ratd.aggregates.particles import read_particles
+from ratd.base.materials import MATERIALS
+from ratd.base.words import plural
+from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
+from ratd.experiments.compression.files import run_row, runs
+from ratd.experiments.compression.run import compress
+from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
+from ratd.pipeline import io
+from ratd.pipeline.provenance import provenance, source_hash
+
+__all__ = ["command", "show"]
+
+TOLD = (0.01, 0.03, 0.1, 0.2, 0.3, 0.5)
+"""Filling factors at which the pressure is told."""
+SMOOTH = 1.1
+"""Ratio of filling factors over which a pressure is a mean."""
+
+
+@click.command("compress")
+@aggregate_options
+@click.option(
+    "--strain-rate", default=1e-5, show_default=True, type=click.FloatRange(0, 1e-2, min_open=True),
+    help="C_v: the box shrinks with dL/dt = -2 C_v L/t_0. The smaller, the lower the phi from which it is static.",
+)  # fmt: skip
+@click.option(
+    "--until-phi", default=0.3, show_default=True, type=click.FloatRange(0, 0.6, min_open=True),
+    help="Filling factor at which to end.",
+)  # fmt: skip
+def command(file, material, unit, starts, out, strain_rate, until_phi):
+    """Squeeze an aggregate by its own copies in a periodic box that shrinks.
+
+    The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
+    runs stand in OUT.nc, a figure in OUT.png. After Ctrl-C the same command goes on.
+    """
+    particles = read_particles(file, unit=unit)
+    out = file.with_name(f"{file.stem}_compressed") if out is None else out
+    settings = {"material": material, "unit": unit, "strain_rate": strain_rate, "until_phi": until_phi}
+    made_with = provenance(source_hash(modules=["ratd.experiments.compression.run"]), settings, [file])
+    particles.grain(material)  # says what is wrong before anything is begun
+
+    def make(start, checkpoint, progress):
+        begun = time.monotonic()
+        grain = Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
+        run = compress(
+            grain,
+            strain_rate,
+            until_phi,
+            checkpoint=checkpoint,
+            progress=lambda phi, pressure, to_go: progress(part_done(begun, to_go)),
+        )
+        return run_row(run)
+
+    target = out.with_name(f"{out.name}.nc")
+    several(target, "compression", MATERIALS[material], made_with, starts, make)
+    click.echo("\n".join([*show(target, out), f"{target} written"]))
+
+
+def show(path, out):
+    """Figure and answers of a file of compressions.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    out : Path
+        Stem of the files to write.
+
+    Returns
+    -------
+    list of str
+        What to say.
+    """
+    found = runs(io.read(path, "compression"))
+    first = found[0].attrs
+    lines = [
+        f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, mean ± standard deviation; static "
+        f"from phi = {first['static_from']:.3g} on, P_0 = {first['rolling_pressure']:.4g} Pa:"
+    ]
+    for phi in TOLD:
+        pressures = [pressure_at(run, phi) for run in found]
+        if np.isfinite(pressures).any():
+            over = np.nanmean(pressures) / (first["rolling_pressure"] * phi**3)
+            lines.append(f"{answer(f'P at phi {phi:g}', pressures, 'Pa')}: {over:.3g} P_0 phi³")
+    figure = Path(f"{out}.png")
+    save(_figure(found), figure)
+    return [*lines, f"{figure} written"]
+
+
+def pressure_at(run, phi):
+    """Mean pressure [Pa] of the records within a factor of `SMOOTH`^(1/2) of a filling factor; NaN where there is none."""
+    near = np.abs(np.log(run["phi_mean"].values / phi)) <= 0.5 * np.log(SMOOTH)
+    inside = run["phi"].values[0] < phi <= run["phi"].values[-1] * (1 + 1e-9)
+    return float(run["pressure"].values[near].mean()) if near.any() and inside else np.nan
+
+
+@styled
+def _figure(found):
+    """Pressure of all starts against the filling factor, beside P_0 phi^3."""
+    first = found[0].attrs
+    title = f"{first['n_monomers']} monomers of {first['material']}, $C_v$ = {first['strain_rate']:.1g}"
+    figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, title)
+    axes = figure.subplots()
+    for k, run in enumerate(found):
+        pressure = np.where(run["pressure"] > 0.0, run["pressure"], np.nan)
+        axes.loglog(run["phi_mean"], pressure, color=HIGHLIGHT, lw=0.7, label=None if k else "starts")
+    phi = np.array([found[0]["phi_mean"].values[0], found[0]["phi_mean"].values[-1]])
+    axes.loglog(phi, first["rolling_pressure"] * phi**3, color="black", label=r"$P_0\phi^3$")
+    axes.axvline(first["static_from"], color=GREY, ls=":", label="static from here")
+    axes.set_xlabel(r"filling factor $\phi$")
+    axes.set_ylabel("pressure [Pa]")
+    axes.legend()
+    return figure
