@@ -96,7 +96,7 @@ def show(path, out):
 
 
 def pressure_at(run, phi):
-    """Mean pressure [Pa] of the records within a factor of `SMOOTH`^(1/2) of a filling factor; NaN where there is none."""
+    """Mean pressure [Pa] of the records within half of `SMOOTH` of a filling factor, NaN where there is none."""
     near = np.abs(np.log(run["phi_mean"].values / phi)) <= 0.5 * np.log(SMOOTH)
     inside = run["phi"].values[0] < phi <= run["phi"].values[-1] * (1 + 1e-9)
     return float(run["pressure"].values[near].mean()) if near.any() and inside else np.nan
