@@ -11,9 +11,10 @@ from ratd.aggregates.particles import read_particles
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
+from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import run_row, runs
 from ratd.experiments.compression.run import compress
-from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
+from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
 from ratd.pipeline import io
 from ratd.pipeline.provenance import provenance, source_hash
 
@@ -106,7 +107,7 @@ def pressure_at(run, phi):
 def _figure(found):
     """Pressure of all starts against the filling factor, beside P_0 phi^3."""
     first = found[0].attrs
-    title = f"{first['n_monomers']} monomers of {first['material']}, $C_v$ = {first['strain_rate']:.1g}"
+    title = f"{first['n_monomers']} monomers of {first['material']}, $C_v = {power(first['strain_rate'])}$"
     figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, title)
     axes = figure.subplots()
     for k, run in enumerate(found):
@@ -117,5 +118,7 @@ def _figure(found):
     axes.axvline(first["static_from"], color=GREY, ls=":", label="static from here")
     axes.set_xlabel(r"filling factor $\phi$")
     axes.set_ylabel("pressure [Pa]")
+    logarithmic(axes.xaxis)
+    logarithmic(axes.yaxis)
     axes.legend()
     return figure
