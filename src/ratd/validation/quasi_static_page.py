@@ -104,7 +104,8 @@ def findings(table, looks):
     fine = pd.concat(
         [shifts(table, by=("type", "size_class")), shifts(table.assign(type="all"), by=("type", "size_class"))]
     )
-    fine = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) & (fine["error"] < KNOWN)]
+    every_class = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY)]
+    fine = every_class[every_class["error"] < KNOWN]
     values["classes"] = len(fine[fine["mark"] == "omega_mass_75"])
     for mark in MARKS:
         part = fine[fine["mark"] == mark]
@@ -114,6 +115,10 @@ def findings(table, looks):
         values[f"worst {mark} where"] = (
             f"{worst['type']}, {worst['size_class']}, {SHOWN[worst['vary'], worst['value']]}"
         )
+    ba = _paired(table, own, "stretch", 1e-14)
+    ba = ba[(ba["type"] == "BA") & (ba["a_eff"] > 250 * NM)]
+    values["BA differ"] = ((ba["omega_mass_75"] / ba["omega_mass_75_own"] - 1.0).abs() > 0.01).mean()
+    values["all classes"] = int((every_class["mark"] == "omega_mass_75").sum())
     values["steady"] = (
         "do not depend"
         if max(values["worst omega_first_loss"].value, values["worst omega_mass_75"].value) < 0.01
@@ -124,8 +129,9 @@ def findings(table, looks):
 
 
 def _text(row):
-    """Median of ratios with its error, and where two thirds of them lie."""
-    return f"{row['median']:.4f} ± {row['error']:.4f} ({row['low']:.3f}–{row['high']:.3f})"
+    """Median of ratios with its error, where two thirds of them lie, and how many there are."""
+    error = f"± {row['error']:.4f}" if row["error"] >= 5e-5 else "± < 0.0001"
+    return f"{row['median']:.4f} {error} ({row['low']:.3f}–{row['high']:.3f}; {row['n']})"
 
 
 def _steps(own):
@@ -163,6 +169,7 @@ def _torque(table, own):
     pairs = _paired(table, own, "drive", 1.0)
     values = {"torque grains": len(pairs)}
     for kind, part in pairs.groupby("type"):
+        values[f"torque {kind} omega_disr"] = _text(median_of(part["omega_disr"] / part["omega_disr_own"]))
         for mark in ("first_loss", "mass_75"):
             omega, momentum, ratio = (
                 part[f"{name}_{mark}"] / part[f"{name}_{mark}_own"]
@@ -170,14 +177,15 @@ def _torque(table, own):
             )
             for name, ratios in (("omega", omega), ("L", momentum), ("shape", ratio)):
                 values[f"torque {kind} {mark} {name}"] = _text(median_of(ratios))
-            values[f"torque {kind} {mark} higher"] = (omega > 1.02).mean()
-            values[f"torque {kind} {mark} lower"] = (omega < 0.98).mean()
+    pairs = pairs[np.isfinite(pairs["omega_mass_75"] * pairs["omega_mass_75_own"])]
     omega = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
+    yielding = pairs["axis_ratio_mass_75"] / pairs["axis_ratio_mass_75_own"]
     found = median_of(omega)
     values["torque change"] = Measured(abs(found["median"] - 1.0), found["error"])
     values["torque mean"] = np.exp(np.log(omega).mean())
     values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
     values["torque higher"] = (omega > 1.02).mean()
+    values["torque stretched"] = _text(median_of(yielding[omega > 1.02]))
     values["torque lower"] = (omega < 0.98).mean()
     chaos = _paired(table, own, "moved", 1.0)
     moved = chaos["omega_mass_75"] / chaos["omega_mass_75_own"]
@@ -193,6 +201,8 @@ def _slow(table, own):
         for mark in MARKS:
             values[f"{vary} {value:g} {mark}"] = _text(median_of(pairs[mark] / pairs[f"{mark}_own"]))
         values[f"{vary} {value:g} grains"] = len(pairs)
+        off = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
+        values[f"{vary} {value:g} range"] = f"{off.min():.2f} to {off.max():.2f}"
         values[f"{vary} {value:g} steps"] = (pairs["steps"] / pairs["steps_own"]).median()
     return values
 
