@@ -11,12 +11,13 @@ name, that is values that begin with ``name.``; such parts may stand in each oth
 
 import math
 import re
+import sys
 from difflib import get_close_matches
 from typing import NamedTuple
 
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 
-__all__ = ["Measured", "fill", "slots"]
+__all__ = ["Measured", "command", "fill", "slots"]
 
 _SLOT = re.compile(r"\{\{\s*([^{}:=|]+?)\s*(?:([:=|])([^}]*))?\}\}")
 _CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
@@ -114,3 +115,37 @@ def _number(value, form):
     text = format(value, form).replace("-", "−") if value else "0"
     mantissa, e, exponent = text.partition("e")
     return f"{mantissa}·10{str(int(exponent.replace('−', '-'))).translate(_RAISED)}" if e else text
+
+
+def command(words, about, collect, redraw):
+    """The command line of a document.
+
+    Parameters
+    ----------
+    words : list of str
+        Those after the name of the module.
+    about : str
+        The text of the module, which says what the words are.
+    collect : callable
+        Takes data from a folder of results.
+    redraw : callable
+        Writes the document and its figures from its data.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    try:
+        match words:
+            case ["collect", results]:
+                collect(results)
+            case ["redraw"]:
+                redraw()
+            case _:
+                print(about.strip())
+                return 2
+    except (InputError, FileError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0

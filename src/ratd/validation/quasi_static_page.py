@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
-from ratd.pipeline.documents import Measured, fill
+from ratd.pipeline.documents import Measured, command, fill
 from ratd.validation import remnant
 from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
 
@@ -285,21 +285,9 @@ def turning(looks):
     return figure
 
 
-def main(arguments):
+def main(words):
     """The command line; returns the exit code."""
-    try:
-        match arguments:
-            case ["collect", results]:
-                collect(results)
-            case ["redraw"]:
-                redraw()
-            case _:
-                print(__doc__.strip())
-                return 2
-    except (InputError, FileError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
+    return command(words, __doc__, collect, redraw)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError
 from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
 from ratd.experiments.compression.findings import findings, spun_up
@@ -17,7 +17,7 @@ from ratd.experiments.compression.plan import load
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
-from ratd.pipeline.documents import fill
+from ratd.pipeline.documents import command, fill
 
 __all__ = ["collect", "main", "read_data", "redraw"]
 
@@ -122,21 +122,9 @@ def draw(name, plan, sets, entries, grains, data):
     return getattr(module, name)(tables)
 
 
-def main(arguments):
+def main(words):
     """The command line; returns the exit code."""
-    try:
-        match arguments:
-            case ["collect", results]:
-                collect(results)
-            case ["redraw"]:
-                redraw()
-            case _:
-                print(__doc__.strip())
-                return 2
-    except (InputError, FileError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
+    return command(words, __doc__, collect, redraw)
 
 
 if __name__ == "__main__":
