@@ -6,6 +6,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up import study
+from ratd.experiments.spin_up.grain_table import read_spun_up
 from ratd.experiments.spin_up.plan import Plan, load
 from ratd.pipeline import blocks, io, queue
 
@@ -67,6 +68,14 @@ def test_rows_hold_marks_and_fragments(done):
             assert row["axis_ratio_first_loss"].item() > 1.0
             assert row["fragment_mass"].sum() <= row.attrs["initial_mass"] * (1 + 1e-9) and row.sizes["fragment"]
             assert len(row["source"].item()) == 16
+
+
+def test_the_table_of_an_ensemble_is_read_from_the_rows(done):
+    table = read_spun_up(done / "prescribed")
+    assert table["type"].tolist() == ["BA", "BA", "BAM2", "BAM2"] and table["seed"].tolist() == [0, 1, 0, 1]
+    (first, *_) = rows(done / "prescribed" / "q-S_BA.nc")
+    assert table["omega_mass_75"][0] == first["omega_mass_75"].item() and table["steps"][0] == first.attrs["steps"]
+    assert table["n_monomers"][0] == first.attrs["initial_n_monomers"]
 
 
 def test_what_was_stopped_has_the_bytes_of_two_processes_at_work(done, tmp_path):

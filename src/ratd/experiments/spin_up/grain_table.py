@@ -1,6 +1,7 @@
 """One table of all grains: how each was grown, and how it was disrupted."""
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -10,8 +11,10 @@ from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.experiments.spin_up.cells import as_frame, size_key, sort_cells
 from ratd.experiments.spin_up.marks import VARIABLES as MARK_COLUMNS
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
 
-__all__ = ["COLUMNS", "GRAIN_COLUMNS", "KEYS", "RUN_COLUMNS", "grain_table", "table_dataset"]
+__all__ = ["COLUMNS", "GRAIN_COLUMNS", "KEYS", "RUN_COLUMNS", "grain_table", "read_spun_up", "table_dataset"]
 
 KEYS = ("material", "type", "a_eff", "seed")
 """The columns that together name one grain."""
@@ -116,6 +119,23 @@ def grain_table(grains=None, marks=None):
         elif name != "seed":
             table[name] = table[name].astype(float)
     return sort_cells(table)
+
+
+def read_spun_up(folder):
+    """Table of the grains that the queue of spin-ups has finished.
+
+    Parameters
+    ----------
+    folder : path-like
+        Of one drive, below that of `ratd.experiments.spin_up.study`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `grain_table` makes it.
+    """
+    paths = sorted(Path(folder).glob("*.nc"))
+    return grain_table(marks=[row for path in paths for row in rows(io.read(path, "spun_up"), "spun_up")])
 
 
 def table_dataset(table, dim="grain"):
