@@ -13,6 +13,9 @@ import pandas as pd
 from ratd.base.errors import FileError
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
+from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.grain_table import read_spun_up
+from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import Measured, command, fill
@@ -26,9 +29,14 @@ FIGURES = Path("docs/quasi_static")
 TEMPLATE = Path("docs/templates/quasi_static.md")
 DOCUMENT = Path("docs/quasi_static.md")
 CHECKS = ("quasi_static", "remnant")
+ENSEMBLE = Path("docs/reproduction/data/spun_up/prescribed")
+BEFORE = Path("docs/reproduction/data/ensemble/prescribed/grains.nc")
+"""The grains as the queue of spin-ups finds them, and as they were found by spin-ups that do not wait."""
 TYPES = ("BA", "BAM1", "BAM2")
 CLASSES = {"100 to 200 nm": (0, 250), "300 nm": (250, 400), "450 nm": (400, 600)}
 """Size classes [nm]."""
+SIZES = {"small": (0, 225), "middle": (225, 425), "large": (425, 600)}
+"""Classes of size of the ensemble [nm]."""
 SHOWN = {
     ("stretch", 8e-14): "stretch 0.08 pm",
     ("stretch", 4e-14): "stretch 0.04 pm",
@@ -67,8 +75,11 @@ def redraw(folder=".", into=None):
     table, looks = (pd.read_csv(folder / DATA / f"{check}.csv") for check in CHECKS)
     save(strips(table), into / FIGURES / "numbers.png")
     save(turning(looks), into / FIGURES / "remnant.png")
+    values = findings(table, looks)
+    if any((folder / ENSEMBLE).glob("*.nc")):
+        values |= against(read_spun_up(folder / ENSEMBLE), read_table(folder / BEFORE))
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
-    write_text(into / DOCUMENT, fill(template, findings(table, looks), str(TEMPLATE)))
+    write_text(into / DOCUMENT, fill(template, values, str(TEMPLATE)))
 
 
 def findings(table, looks):
@@ -125,6 +136,31 @@ def findings(table, looks):
         else "depend"
     )
     values |= _arms(table, own) | _steps(own) | _torque(table, own) | _slow(table, own) | _remnants(looks)
+    return values
+
+
+def against(now, before):
+    """Values of the slots on the ensemble, over that of spin-ups that do not wait, grain by grain.
+
+    Parameters
+    ----------
+    now, before : pandas.DataFrame
+        As `ratd.experiments.spin_up.grain_table.grain_table` makes them.
+
+    Returns
+    -------
+    dict
+    """
+    key = ["material", "type", "size", "seed"]
+    now, before = (table.assign(size=size_key(table["a_eff"])) for table in (now, before))
+    pairs = now.merge(before, on=key, suffixes=("", "_before"))
+    values = {"ensemble.grains": len(now), "ensemble.pairs": len(pairs)}
+    values["ensemble.unfinished"] = int((now["end_reason"] != "one contact left").sum())
+    for kind in TYPES:
+        for name, (low, high) in SIZES.items():
+            part = pairs[(pairs["type"] == kind) & pairs["a_eff"].between(low * NM, high * NM)]
+            for mark in MARKS:
+                values[f"ensemble.{kind} {name} {mark}"] = _text(median_of(part[mark] / part[f"{mark}_before"]))
     return values
 
 
