@@ -54,6 +54,8 @@ SHOWN = {
 ARMS = (("stretch", 1e-14), ("stretch", 5e-15), ("unrest", 0.005), ("pace", 0.005))
 KNOWN = 0.01
 """Error of the median of a class that tells something of 1 %."""
+SEEN = np.radians(1.0)
+"""A tilt [rad] that is more than the grain's being out of shape."""
 STEADY = tuple(pair for pair in SHOWN if pair[0] in ("stretch", "pace", "drag", "longest", "displacement"))
 """Numbers of the scheme, on which the marks must not depend."""
 
@@ -248,15 +250,15 @@ def _remnants(looks):
     events = remnant.events(looks)
     values = {"remnant grains": len(looks.groupby(["type", "seed"]))}
     for drag, part in events.groupby("drag"):
-        seen = part[part["turns"].notna() & (part["tilt"] > 1.0)]
+        seen = part[part["turns"].notna() & (part["tilt"] > SEEN)]
         values[f"remnant {drag:g} events"] = len(part)
         values[f"remnant {drag:g} seen"] = len(seen)
-        values[f"remnant {drag:g} tilt"] = part["tilt"].median()
-        values[f"remnant {drag:g} greatest"] = part["tilt"].max()
+        values[f"remnant {drag:g} tilt"] = np.degrees(part["tilt"].median())
+        values[f"remnant {drag:g} greatest"] = np.degrees(part["tilt"].max())
         values[f"remnant {drag:g} turns"] = seen["turns"].median()
         values[f"remnant {drag:g} turns high"] = seen["turns"].quantile(0.84)
     quiet = looks[(looks["drag"] == 1.0) & (looks["roundness"] < 0.95)]
-    values["remnant tilt at rest"] = quiet["tilt"].median()
+    values["remnant tilt at rest"] = np.degrees(quiet["tilt"].median())
     return values
 
 
@@ -299,7 +301,7 @@ def turning(looks):
     """Figure: one grain that loses mass, and how far its axis of greatest inertia stands off."""
     key = ["type", "seed"]
     events = remnant.events(looks)
-    seen = events[(events["drag"] == 1.0) & events["turns"].notna() & (events["tilt"] > 10.0)]
+    seen = events[(events["drag"] == 1.0) & events["turns"].notna() & (events["tilt"] > 10 * SEEN)]
     counts = (seen if len(seen) else events).groupby(key).size()
     kind, seed = counts.idxmax()
     figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, f"What is left of a {kind} grain turns into its own axis")
@@ -311,7 +313,7 @@ def turning(looks):
         above.plot(
             run["turns"], 100 * run["mass_fraction"], color=colour, drawstyle="steps-post", label=f"c = {drag:g}"
         )
-        below.plot(run["turns"], run["tilt"], color=colour)
+        below.plot(run["turns"], np.degrees(run["tilt"]), color=colour)
     above.set_ylabel("mass left [%]")
     above.set_ylim(0, 104)
     below.set_ylabel("tilt [°]")

@@ -28,7 +28,7 @@ COLUMNS = {
     "turns": ("1", "turns of the grain since its first loss of mass"),
     "omega": ("rad s-1", "angular velocity"),
     "mass_fraction": ("1", "mass of the largest fragment over that of the grain"),
-    "tilt": ("degree", "angle between its axis of greatest inertia and the rotation axis"),
+    "tilt": ("rad", "angle between its axis of greatest inertia and the rotation axis"),
     "roundness": ("1", "I_2/I_1 of the largest fragment: near 1 the axis of greatest inertia is not defined"),
     "steps": ("1", "time steps so far"),
 }
@@ -85,7 +85,7 @@ def _looks(grain, drag, every, mass_left):
             "turns": turns,
             "omega": omega,
             "mass_fraction": fraction,
-            "tilt": np.degrees(np.arccos(min(1.0, abs(axes[0, 2])))),
+            "tilt": np.arccos(min(1.0, abs(axes[0, 2]))),
             "roundness": moments[1] / moments[0],
             "steps": float(state.counter[STEPS]),
         }
@@ -113,9 +113,9 @@ def events(table):
     Returns
     -------
     pandas.DataFrame
-        The columns of the grain, drag, mass_fraction (after the loss), tilt (greatest before the next event [degree]),
+        The columns of the grain, drag, mass_fraction (after the loss), tilt (greatest before the next event [rad]),
         turns (from there until it stays below 1/e of that; NaN where the next event comes first), end (tilt at the
-        last look before the next event [degree]), roundness.
+        last look before the next event [rad]), roundness.
     """
     found = []
     keys = ["material", "type", "a_eff", "seed", "drag"]
