@@ -171,6 +171,25 @@ def test_killed_run_goes_on_with_the_same_bits(run, grain, tmp_path, monkeypatch
     assert not list(tmp_path.glob("*.tmp"))
 
 
+def test_a_slow_record_is_done_in_pieces_and_goes_on_within_it(run, grain, tmp_path, monkeypatch):
+    monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(spinup, "CALL", 7)
+    path = tmp_path / "grain.checkpoint"
+    real, within = spinup.go_on, []
+
+    def dying(state, law, drive, box, integrator, goal):
+        found = real(state, law, drive, box, integrator, goal)
+        within.append(found[1] == spinup.STEPS_DONE)
+        if sum(within) == 40:
+            raise KeyboardInterrupt
+        return found
+
+    monkeypatch.setattr(spinup, "go_on", dying)
+    with pytest.raises(KeyboardInterrupt):
+        spin_up(grain, **HOW, checkpoint=path)
+    xr.testing.assert_identical(run, spin_up(grain, **HOW, checkpoint=path))
+
+
 def test_foreign_or_damaged_checkpoint_is_not_used(grain, tmp_path, monkeypatch):
     monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
     path = tmp_path / "c"

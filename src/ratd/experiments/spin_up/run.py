@@ -25,6 +25,8 @@ __all__ = ["spin_up"]
 
 CHECKPOINT_INTERVAL = 60.0
 """Wall time [s] between two checkpoints."""
+CALL = 100_000
+"""Steps after which the compiled code comes back, so that Ctrl-C, progress and checkpoints work in a slow run too."""
 SMALLER = 0.25
 """A part of a run that fails is made again with steps so much smaller, `TRIES` times at most."""
 TRIES = 3
@@ -180,11 +182,12 @@ class Run:
             self.snapshots.append(snapshot(state, self.law))
 
     def advance(self):
-        """Go on to the next record; what fails is made again with smaller steps."""
+        """Go on to the next record, for `CALL` steps at most; what fails is made again with smaller steps."""
         before = copied(self.state)
         integrator, tries = self.integrator, 0
+        pause = min(self.steps_goal, self.state.counter[STEPS] + CALL)
         while True:
-            goal = until(steps=self.steps_goal, clock=self.edge(), fewest_contacts=self.fewest)
+            goal = until(steps=pause, clock=self.edge(), fewest_contacts=self.fewest)
             try:
                 self.state, code = go_on(self.state, self.law, self.motion, open_space(), integrator, goal)
                 break
@@ -198,7 +201,8 @@ class Run:
             self._choose_step(integrator)
         if integrator != self.integrator:
             self._choose_step(self.integrator)
-        self.note(code)
+        if code != STEPS_DONE or pause == self.steps_goal:
+            self.note(code)
 
     def _start(self, state, rows, snapshots):
         self.state, self.rows, self.snapshots = state, rows, snapshots
