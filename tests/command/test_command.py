@@ -68,6 +68,7 @@ def test_a_cluster_is_compressed_from_its_file(tmp_path):
     assert float(said[3]) == pytest.approx(over, rel=0.01)
     assert "phi 0.3" not in done.stdout  # it was not reached
     assert cluster.with_name("cluster_compressed.png").read_bytes()[1:4] == b"PNG"
+    assert cluster.with_name("cluster_compressed.html").read_text().startswith("<!doctype html>")
     again = run("show", target, "--out", cluster.with_name("again"))
     assert again.exit_code == 0 and said[0] in again.stdout
 

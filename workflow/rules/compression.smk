@@ -166,6 +166,31 @@ for name in compression.FIGURES:
             "../scripts/figure.py"
 
 
+rule compression_page:
+    input:
+        run=lambda w: COMPRESSION.snapshots()[0],
+    output:
+        page=report(
+            "<results>/figures/compression.html",
+            caption="../report/compression_page.rst",
+            category="Interactive",
+            labels={"page": "one compression", "drive": "none"},
+        ),
+    log:
+        "<results>/logs/figures/compression_page.log",
+    benchmark:
+        "<results>/benchmarks/figures/compression_page.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    params:
+        task=task("analyse", "ratd.experiments.compression.figures.page:page"),
+        settings={},
+    message:
+        "Make the page of one compression"
+    script:
+        "../scripts/analyse.py"
+
+
 rule compression_tables:
     input:
         COMPRESSION.tables,
@@ -179,3 +204,6 @@ rule compression:
             figure=COMPRESSION.figures,
             form=["pdf", "png"],
         ),
+        ["<results>/figures/compression.html"]
+        if "figure3" in COMPRESSION.figures
+        else [],

@@ -12,16 +12,20 @@ from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
 from ratd.experiments.compression.figures.common import power
+from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
 from ratd.experiments.compression.run import compress
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
 from ratd.pipeline import io
+from ratd.pipeline.atomic import write_text
 from ratd.pipeline.provenance import provenance, source_hash
 
 __all__ = ["command", "show"]
 
 TOLD = (0.01, 0.03, 0.1, 0.2, 0.3, 0.5)
 """Filling factors at which the pressure is told."""
+SNAPSHOTS = 40
+"""Filling factors at which the first start is kept for the page."""
 SMOOTH = 1.1
 """Ratio of filling factors over which a pressure is a mean."""
 
@@ -40,7 +44,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
     """Squeeze an aggregate by its own copies in a periodic box that shrinks.
 
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
-    runs stand in OUT.nc, a figure in OUT.png. After Ctrl-C the same command goes on.
+    runs stand in OUT.nc, a figure in OUT.png, the first one in 3D in OUT.html. After Ctrl-C the same command goes on.
     """
     particles = read_particles(file, unit=unit)
     out = file.with_name(f"{file.stem}_compressed") if out is None else out
@@ -55,6 +59,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
             grain,
             strain_rate,
             until_phi,
+            snapshots=np.geomspace(0.003, until_phi, SNAPSHOTS) if start == 0 else (),
             checkpoint=checkpoint,
             progress=lambda phi, pressure, to_go: progress(part_done(begun, to_go)),
         )
@@ -93,7 +98,14 @@ def show(path, out):
             lines.append(f"{answer(f'P at phi {phi:g}', pressures, 'Pa')}: {over:.3g} P_0 phi³")
     figure = Path(f"{out}.png")
     save(_figure(found), figure)
-    return [*lines, f"{figure} written"]
+    lines.append(f"{figure} written")
+    for run in found:
+        if run.sizes.get("snapshot", 0):
+            page = Path(f"{out}.html")
+            write_text(page, page_of(run))
+            lines.append(f"{page} written")
+            break
+    return lines
 
 
 def pressure_at(run, phi):
