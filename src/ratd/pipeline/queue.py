@@ -121,15 +121,16 @@ def work(tasks, *, until=None, say=print, processes=1):
     Returns
     -------
     int
-        How many rows are left.
+        How many rows are left, those that failed among them.
     """
     left = [task for task in tasks if task.key not in task.table.keys]
     done = 0
     results = _one_by_one(left, until) if processes == 1 else _side_by_side(left, until, processes)
     try:
         for task, row, sentence, seconds in results:
-            task.table.add(row)
-            done += 1
+            if row is not None:
+                task.table.add(row)
+                done += 1
             say(f"{sentence}, {seconds:.0f} s, {len(left) - done} left")
     finally:
         for table in {id(task.table): task.table for task in left}.values():
@@ -162,8 +163,12 @@ def _side_by_side(tasks, until, processes):
 
 
 def _timed(make):
+    """The row, None where the computation failed, a sentence on it, and how long it took [s]."""
     start = time.monotonic()
-    row, sentence = make()
+    try:
+        row, sentence = make()
+    except RuntimeError as error:  # of this row alone: the others go on
+        row, sentence = None, f"failed: {error}"
     return row, sentence, time.monotonic() - start
 
 
