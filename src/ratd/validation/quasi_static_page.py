@@ -168,8 +168,8 @@ def against(now, before):
 
 def _text(row):
     """Median of ratios with its error, where two thirds of them lie, and how many there are."""
-    error = f"± {row['error']:.4f}" if row["error"] >= 5e-5 else "± < 0.0001"
-    return f"{row['median']:.4f} {error} ({row['low']:.3f}–{row['high']:.3f}; {row['n']})"
+    error = " ± < 0.0001" if row["error"] < 5e-5 else f" ± {row['error']:.4f}" if row["n"] > 2 else ""
+    return f"{row['median']:.4f}{error} ({row['low']:.3f}–{row['high']:.3f}; {row['n']})"
 
 
 def _steps(own):

@@ -8,7 +8,8 @@ What there is to do stands in config/spin_up_study.yaml, which stands over confi
 materials, types and sizes comes before the next, so that what is there is an ensemble at any time, a smaller one. Each
 grain becomes a row of a small table in docs/reproduction/data/spun_up, a file a drive, material and type: its marks of
 disruption, what it was just before, and the fragments that left. A row that is there is never computed again, also not
-with other source: it says itself which source it is of.
+with other source: it says itself which source it is of. docs/quasi_static.md tells of this ensemble: after more rows
+`python -m ratd.validation.quasi_static_page redraw` writes it anew.
 """
 
 import sys
