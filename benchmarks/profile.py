@@ -1,7 +1,7 @@
-"""Part (e): at which angular velocities the steps of a spin-up and its contact updates are made.
+"""On request: at which angular velocities the steps of a spin-up are made, and what it waits for meanwhile.
 
-Counted, not timed: from the records of whole runs at the settings of the config. A step takes about as long as it has
-contacts to update, so the shares of the updates say where the time goes.
+Counted, not timed: from whole runs at the settings of the config. A step takes about as long as it has contacts to
+update, so the shares of the updates say where the time goes.
 """
 
 import numpy as np
@@ -9,11 +9,22 @@ import numpy as np
 from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
-from ratd.experiments.spin_up.how import FIRST_LOSS
+from ratd.drives.rotating import OMEGA, UNREST
+from ratd.engine.layout import LARGEST_CONTACTS, STEPS, STRETCH
+from ratd.engine.step import FEW_CONTACTS, until
+from ratd.engine.step import run as go_on
+from ratd.experiments.relax import relax
+from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.how import FIRST_LOSS, how_to_turn
+from ratd.geometry.box import open_space
+from ratd.laws.jkr_with_springs import jkr
 
 DRIVE = "prescribed"
 EDGES = (0.0, FIRST_LOSS, 1.0, 2.0, np.inf)
 """Bands of omega in units of the cut bound: elastic, first losses, disruption, what is left of the grain."""
+EVERY = 20
+"""Steps from one look to the next at what a spin-up waits for."""
+WAITS = ("unrest", "stretch", "neither")
 
 
 def measure(out, plan, *, sizes, about, say):
@@ -37,12 +48,13 @@ def measure(out, plan, *, sizes, about, say):
     for size in sizes:
         for kind in plan.config["types"]:
             grain = grain_of(plan, (material, kind, size), plan.seeds[0])
-            run = spin_up(grain, **arguments_of(plan, DRIVE, kind, 1))
+            arguments = arguments_of(plan, DRIVE, kind, 1)
+            run = spin_up(grain, **arguments)
+            waited = waits(grain) if arguments["stretch"] is not None else [dict.fromkeys(WAITS, np.nan)] * 4
             cell = {"drive": DRIVE, "material": material, "type": kind, "size_nm": size}
-            for low, high, steps, updates in shares(run):
-                rows.append(
-                    cell | {"from_bound": low, "to_bound": high, "steps": steps, "contact_updates": updates} | about
-                )
+            for (low, high, steps, updates), own in zip(shares(run), waited, strict=True):
+                band = {"from_bound": low, "to_bound": high, "steps": steps, "contact_updates": updates}
+                rows.append(cell | band | own | about)
             say(f"profile: {kind} {size} nm: {run.attrs['steps']} steps")
     tables.write(out / "profile.csv", rows)
 
@@ -58,15 +70,41 @@ def shares(run):
     Returns
     -------
     list of tuple of float
-        Both edges of the band [cut bound], share of the time, share of the time times the number of contacts of the
-        largest fragment. The time step hardly changes within a run, so that shares of the time are shares of the steps.
+        Both edges of the band [cut bound], share of the steps, share of the steps times the number of contacts of the
+        largest fragment.
     """
     ratio = run["omega"].values[1:] / run.attrs["cut_bound"]
-    time = np.diff(run["time"].values)
+    steps = np.diff(run["steps_so_far"].values)
     contacts = run["n_contacts"].values
-    updates = time * 0.5 * (contacts[1:] + contacts[:-1])
+    updates = steps * 0.5 * (contacts[1:] + contacts[:-1])
     band = np.searchsorted(EDGES, ratio, side="right") - 1
     return [
-        (EDGES[k], EDGES[k + 1], time[band == k].sum() / time.sum(), updates[band == k].sum() / updates.sum())
+        (EDGES[k], EDGES[k + 1], steps[band == k].sum() / steps.sum(), updates[band == k].sum() / updates.sum())
+        for k in range(len(EDGES) - 1)
+    ]
+
+
+def waits(grain):
+    """What the spin-up of a grain waits for, in each band of `EDGES`.
+
+    Returns
+    -------
+    list of dict
+        Shares of the contact updates of all bands together: while the unrest, while the stretch takes at least half of
+        the rise away (the greater of the two counts), and while neither does.
+    """
+    how, law = how_to_turn(grain.type, cut_bound(grain)), jkr()
+    state, code = relax(grain, law=law), None
+    looks = []
+    while code != FEW_CONTACTS:
+        goal = until(steps=state.counter[STEPS] + EVERY, fewest_contacts=1)
+        state, code = go_on(state, law, how.motion, open_space(), how.integrator, goal)
+        taken = [(state.drive[UNREST] / how.motion.unrest) ** 2, (state.scalar[STRETCH] / how.motion.stretch) ** 2]
+        cause = int(np.argmax(taken)) if max(taken) >= 0.5 else 2
+        looks.append((state.drive[OMEGA], cause, state.counter[LARGEST_CONTACTS]))
+    omega, cause, updates = np.array(looks, dtype=float).T
+    band = np.searchsorted(EDGES, omega / cut_bound(grain), side="right") - 1
+    return [
+        {name: updates[(band == k) & (cause == number)].sum() / updates.sum() for number, name in enumerate(WAITS)}
         for k in range(len(EDGES) - 1)
     ]

@@ -6,6 +6,7 @@ from benchmarks.answer import SLOW, ratios
 from benchmarks.cost import SHORT
 from benchmarks.figures import draw_cost, draw_kernel, draw_scaling
 from benchmarks.goals import goals
+from benchmarks.profile import WAITS
 from benchmarks.scaling import LINEAR_FROM, exponent
 from benchmarks.tables import frame, markdown_table, pair_ratios, projected_range
 from ratd.base.errors import FileError
@@ -240,10 +241,12 @@ def _profile(out):
     data = frame(out, "profile")
     if data is None:
         return ""
-    rows = []
+    rows, waiting = [], []
     for (kind, size), case in data.groupby(["type", "size_nm"], sort=False):
         parts = zip(case["steps"], case["contact_updates"], strict=True)
         rows.append([kind, f"{size:g}", *[f"{steps:.0%} / {updates:.0%}" for steps, updates in parts]])
+        waits = zip(*(case[name] for name in WAITS), strict=True)
+        waiting.append([kind, f"{size:g}", *[" / ".join(f"{share:.0%}" for share in own) for own in waits]])
     first = data[(data["type"] == data["type"].iloc[0]) & (data["size_nm"] == data["size_nm"].iloc[0])]
     bands = [
         f"omega below {high:g}" if low == 0 else f"{low:g} to {high:g}" if np.isfinite(high) else f"above {low:g}"
@@ -253,7 +256,11 @@ def _profile(out):
         "Where the steps of a run go, and the updates of contacts: shares of both, by omega in units of the cut bound, "
         f"for one grain of {data['material'].iloc[0]} each, drive `{data['drive'].iloc[0]}`. Counted, not timed.\n"
     )
-    return "\n".join(["### Where the steps go\n", about, table(["type", "size [nm]", *bands], rows)])
+    parts = ["### Where the steps go\n", about, table(["type", "size [nm]", *bands], rows)]
+    if data["stretch"].notna().all():
+        text = "What the spin-up waited for meanwhile: unrest / stretch / neither, shares of all updates of the run.\n"
+        parts += [text, table(["type", "size [nm]", *bands], waiting)]
+    return "\n".join(parts)
 
 
 def _scaling(out):

@@ -120,7 +120,10 @@ def test_profile_divides_all_steps_among_its_bands(tmp_path):
         assert [row["from_bound"] for row in own] == ["0", "0.7", "1", "2"]
         for column in ("steps", "contact_updates"):
             assert sum(float(row[column]) for row in own) == pytest.approx(1.0, abs=1e-5)
-    assert "### Where the steps go" in (tmp_path / "README.md").read_text()
+        waited = {name: sum(float(row[name]) for row in own) for name in ("unrest", "stretch", "neither")}
+        assert sum(waited.values()) == pytest.approx(1.0, abs=1e-4) and min(waited.values()) > 0.0
+    text = (tmp_path / "README.md").read_text()
+    assert "### Where the steps go" in text and "unrest / stretch / neither" in text
 
 
 def test_a_checkout_agrees_with_itself():
