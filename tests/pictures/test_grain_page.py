@@ -12,6 +12,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.pictures.grain_page import OPENING, SCRIPT, SPHERES, TEMPLATE, grain_page
 from ratd.pictures.snapshots import FARTHEST, force_colours, force_scale, fragment_colours, frames
+from ratd.pictures.stepper import CONTROLS
 from synthetic_runs import make_run, run_with_snapshots
 
 OMEGA_DISR = 1.02e8
@@ -110,13 +111,13 @@ class Loads(HTMLParser):
 def test_the_page_loads_nothing(page):
     assert Loads('<script src="https://example.org/a.js"></script>').found
     assert Loads(page).found == []
-    own = TEMPLATE.read_text() + SCRIPT.read_text()
+    own = TEMPLATE.read_text() + CONTROLS.read_text() + SCRIPT.read_text()
     assert not re.search(r"https?:|url\(|@import|import\(|fetch", own)
     assert scene(page)["plot"]["snapshotType"] == "full"
 
 
 def test_script_and_page_fit_together(page):
-    ids = set(re.findall(r'id="([\w-]+)"', TEMPLATE.read_text())) | {"canvasTarget"}  # k3d's own
+    ids = set(re.findall(r'id="([\w-]+)"', TEMPLATE.read_text() + CONTROLS.read_text())) | {"canvasTarget"}  # k3d's own
     assert set(re.findall(r'element\("([\w-]+)"\)', SCRIPT.read_text())) <= ids
     assert page.count('<div id="canvasTarget"></div>') == page.count('<div id="numbers"') == 1
     assert SCRIPT.read_text() in page and "<title>q-S BAM2 350 nm, seed 0</title>" in page

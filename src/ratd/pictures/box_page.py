@@ -27,6 +27,8 @@ EDGES = np.array(
     [[i, j] for i in range(8) for j in range(i + 1, 8) if np.sum(CORNERS[i] != CORNERS[j]) == 1], dtype=np.uint32
 )
 
+HINT = "The box goes on in all directions with copies of itself."
+
 
 def box_page(phi, box_length, position, radius, title):
     """Page with a cluster that is squeezed by its own copies, turned with the mouse and stepped through.
@@ -73,7 +75,7 @@ def box_page(phi, box_length, position, radius, title):
         most=MOST,
         colour=LARGEST,
     )
-    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"))
+    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"), HINT)
 
 
 def _contacts(place, radius, edge):

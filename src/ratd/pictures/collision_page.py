@@ -21,6 +21,8 @@ VIEW = np.array([0.15, -0.95, 0.28])
 TEMPLATE = Path(__file__).with_name("collision_page.html")
 SCRIPT = Path(__file__).with_name("collision_page.js")
 
+HINT = "The clusters come in along x, from left and right."
+
 
 def collision_page(time, position, radius, piece, origin, title):
     """Page with a collision that is turned with the mouse and steps through its snapshots.
@@ -72,7 +74,7 @@ def collision_page(time, position, radius, piece, origin, title):
         one=LARGEST,
         other=OTHERS[0],
     )
-    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"))
+    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"), HINT)
 
 
 def _piece_colours(piece):

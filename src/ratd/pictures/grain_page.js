@@ -19,7 +19,7 @@ function tell(step) {
 
 const atDisruption = steps.ratio.findIndex((ratio) => ratio !== null && ratio >= 1);
 if (atDisruption >= 0) {
-    element("disruption").append(new Option("disruption", atDisruption));
+    element("marks").append(new Option("disruption", atDisruption));
 }
 
 colourBy("fragment");

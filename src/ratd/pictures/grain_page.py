@@ -30,6 +30,11 @@ AXIS = 2
 """Number of the axis of rotation in the scene, beside that of the spheres."""
 TEMPLATE = Path(__file__).with_name("grain_page.html")
 SCRIPT = Path(__file__).with_name("grain_page.js")
+SHORT = "The rod is {axis} nm long."
+HINT = (
+    "The tick below the bar marks &omega;<sub>disr</sub>. The grain is seen in the frame that turns with it. The grey "
+    "rod, {axis} nm long, lies along the axis of rotation through the centre of mass of the largest fragment."
+)
 
 
 def grain_page(run, omega_disr, drive=None):
@@ -74,12 +79,12 @@ def grain_page(run, omega_disr, drive=None):
     panel = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(title),
         drive=escape(drive_line),
-        axis=f"{axis_length:g}",
         largest=LARGEST,
         forces=", ".join(to_hex(FORCES(part)) for part in np.linspace(0, 1, 17)),
         greatest=f"{scale.vmax / 1e-9:.3g}",
     )
-    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"))
+    short, hint = (text.format(axis=f"{axis_length:g}") for text in (SHORT, HINT))
+    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"), hint, short)
 
 
 def _steps(run, shown, omega_disr):

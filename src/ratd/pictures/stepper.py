@@ -7,6 +7,7 @@ told beside the spheres, and the choice of colours, is the page's own: `ratd.pic
 import re
 from html import escape
 from pathlib import Path
+from string import Template
 
 import k3d
 import numpy as np
@@ -24,6 +25,7 @@ OPENING = 30.0
 SPHERES = 1
 """Number of the spheres in the scene; k3d would take addresses in memory, which differ from run to run."""
 SCRIPT = Path(__file__).with_name("stepper.js")
+CONTROLS = Path(__file__).with_name("stepper.html")
 STYLE = Path(__file__).with_name("stepper.css")
 
 
@@ -81,19 +83,24 @@ def packed(colours):
     return red << 16 | green << 8 | blue
 
 
-def finished_page(plot, panel, title, script):
-    """HTML of a scene with a panel of controls.
+def finished_page(plot, panel, title, script, hint, short=None):
+    """HTML of a scene with its controls.
 
     Parameters
     ----------
     plot : k3d.Plot
     panel : str
-        HTML with what `stepper.js` asks for: play, step, of, picture, and a radio button and a legend for
-        each way of colours.
+        HTML with what the page tells, and a radio button and a legend for each way of colours.
     title : str
     script : str
         The page's own script, which has a function `tell(step)` and ends by choosing colours.
+    hint : str
+        HTML that stands below the slider, after what mouse and keys do.
+    short : str, optional
+        The same on a phone.
     """
+    controls = Template(CONTROLS.read_text(encoding="utf-8"))
+    panel += controls.substitute(hint=hint, short=hint if short is None else short)
     page = plot.get_snapshot(additional_js_code=SCRIPT.read_text(encoding="utf-8") + script)
     # k3d's title holds the time, and its page has no room for controls of our own
     head = f'<title>{escape(title)}</title>\n    <meta name="viewport" content="width=device-width, initial-scale=1">'
