@@ -125,9 +125,6 @@ def findings(table, looks):
         off = (part["median"] - 1.0).abs()
         worst = part.loc[off.idxmax()]
         values[f"worst {mark}"] = Measured(off.max(), worst["error"])
-        values[f"worst {mark} where"] = (
-            f"{worst['type']}, {worst['size_class']}, {SHOWN[worst['vary'], worst['value']]}"
-        )
     ba = _paired(table, own, "stretch", 1e-14)
     ba = ba[(ba["type"] == "BA") & (ba["a_eff"] > 250 * NM)]
     values["BA differ"] = ((ba["omega_mass_75"] / ba["omega_mass_75_own"] - 1.0).abs() > 0.01).mean()
@@ -205,7 +202,7 @@ def _arms(table, own):
 def _torque(table, own):
     """omega, L and shape under a torque over those under a prescribed omega."""
     pairs = _paired(table, own, "drive", 1.0)
-    values = {"torque grains": len(pairs)}
+    values = {}
     for kind, part in pairs.groupby("type"):
         values[f"torque {kind} omega_disr"] = _text(median_of(part["omega_disr"] / part["omega_disr_own"]))
         for mark in ("first_loss", "mass_75"):
@@ -252,7 +249,6 @@ def _remnants(looks):
     for drag, part in events.groupby("drag"):
         seen = part[part["turns"].notna() & (part["tilt"] > SEEN)]
         values[f"remnant {drag:g} events"] = len(part)
-        values[f"remnant {drag:g} seen"] = len(seen)
         values[f"remnant {drag:g} tilt"] = np.degrees(part["tilt"].median())
         values[f"remnant {drag:g} greatest"] = np.degrees(part["tilt"].max())
         values[f"remnant {drag:g} turns"] = seen["turns"].median()
