@@ -7,6 +7,7 @@ later). Only these fragments are kept: what becomes of the largest one after tha
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.statistics import equal_weights
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
+from ratd.pipeline import io
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
@@ -133,6 +135,40 @@ def fragment_table(dataset):
     table["half"] = before < HALF
     table["disruption"] = table["fragment_omega"] <= table["omega_disr"]
     return table
+
+
+def read_spun_up_fragments(folder):
+    """Fragments of the grains that the queue of spin-ups has finished.
+
+    Parameters
+    ----------
+    folder : path-like
+        As of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `fragment_table` makes it.
+    """
+    files = [io.read(path, "spun_up") for path in sorted(Path(folder).glob("*.nc"))]
+    grains = pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "material": file.attrs["material"],
+                    "type": file.attrs["type"],
+                    "grain_mass": file["initial_mass"].values,
+                    **{name: file[name].values for name in ("a_eff", "seed", "omega_disr", "mass_fraction_disr")},
+                    "row_size_fragment": file["row_size_fragment"].values,
+                }
+            )
+            for file in files
+        ]
+    )
+    joined = xr.Dataset({name: ("row", grains[name].to_numpy()) for name in grains})
+    for name in FRAGMENT_COLUMNS:
+        joined[name] = ("fragment", np.concatenate([file[name].values for file in files]))
+    return fragment_table(joined)
 
 
 MONOMER_BINS = (1, 2, 4, 11, np.inf)
