@@ -2,7 +2,8 @@
 
 Radiative torques against drag by gas and by the grain's own infrared light, after Hoang et al. (2019, Nature Astronomy
 3, 766), Hoang (2019, ApJ 876, 13) and Hoang (2020, Galaxies 8, 52), in SI units. Their rounded numbers are no input
-here, but for `INFRARED`; how far they are from these formulae stands with each function.
+here, but for `INFRARED`; how far they are from these formulae stands with each function. They are quoted from memory
+and from codes that use them, since the text of the papers was not at hand.
 """
 
 import math
@@ -86,7 +87,7 @@ def torque_efficiency(size, wavelength):
 
     Notes
     -----
-    Hoang & Lazarian (2014, MNRAS 438, 680). The two meet within 2 %. For light of one wavelength it is 0.4 (lambda/
+    Hoang & Lazarian (2014, MNRAS 438, 680). The two meet within 3 %. For light of one wavelength it is 0.4 (lambda/
     (1.8 a))^-3 = 2.3 (lambda/a)^-3 (Lazarian & Hoang 2007): the 2.3 does not go with the exponent 2.7.
     """
     ratio = wavelength / np.asarray(size)
