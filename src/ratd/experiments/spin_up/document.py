@@ -25,10 +25,12 @@ from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure9 import figure9
 from ratd.experiments.spin_up.figures.figure10 import figure10
+from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import fragment_table, read_spun_up_fragments
 from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, read_ensemble, read_spun_up
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.run_files import read_runs
+from ratd.experiments.spin_up.surviving import limits
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
@@ -174,7 +176,8 @@ def findings(data):
     values |= side_findings.of_ways(data.tables["parameters"]) | side_findings.of_pairs(data.pairs)
     values |= side_findings.of_formulae(data.tables["formulae"])
     values |= side_findings.of_curve(data.driven, data.grown) | side_findings.of_prediction(data.driven)
-    values |= side_findings.composition_tables()
+    values |= side_findings.composition_tables() | side_findings.of_heat()
+    values |= limits(data.driven, data.grown, mark=numbers.MARK)
     if data.recomputed is not None:
         values |= side_findings.recomputed(data.printed, data.recomputed)
     values["cells.quarter"] = numbers.cell_medians(data.driven)
@@ -196,6 +199,7 @@ def figures(data):
             yield f"figure8_{drive}", figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown)
     yield "figure1", figure1(data.grains)
     yield "figure2", figure2(data.grown)
+    yield "radiation", radiation(data.driven, data.grown, drive=DRIVEN)
     yield "figure9_prescribed", figure9(data.tables["parameters"])
     yield "figure10", figure10(pd.concat(data.pairs, ignore_index=True))
 

@@ -18,10 +18,11 @@ from ratd.experiments.spin_up.formulae import DAMPING, formula_effects
 from ratd.experiments.spin_up.parameters import effect
 from ratd.experiments.spin_up.printed import PAIR_ERROR, PAPER_MEAN_RADIUS, TABLE_3, VISCOUS_EFFECT
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law
+from ratd.laws import thermal
 from ratd.pipeline.documents import Measured
 
 __all__ = [
-    "composition_tables", "of_curve", "of_formulae", "of_pairs", "of_prediction", "of_ways", "recomputed",
+    "composition_tables", "of_curve", "of_formulae", "of_heat", "of_pairs", "of_prediction", "of_ways", "recomputed",
 ]  # fmt: skip
 
 EXAMPLE = ("q-S", "BAM1", 400 * NM)
@@ -122,6 +123,18 @@ def recomputed(older, newer):
     pairs = newer.merge(older, on=keys, suffixes=("", "_older"))
     found = median_of(pairs[MARK] / pairs[f"{MARK}_older"])
     return {"check.n": len(pairs), "check.ratio": Measured(found["median"], found["error"])}
+
+
+def of_heat():
+    """What heat does to the contact of two equal q-S spheres: barriers, and what is left of the pull over an hour."""
+    values = {}
+    for row in thermal.table(materials=("q-S",)).to_dict("records"):
+        start = f"thermal.{row['law']} {row['radius'] / NM:.0f} nm"
+        values[f"{start} eV"] = row["barrier_eV"]
+        values[f"{start} life"] = row["life_temperature"]
+        values[f"{start} kT {row['temperature']:.0f} K"] = row["barrier_kT"]
+        values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
+    return values
 
 
 def composition_tables():
