@@ -13,7 +13,8 @@ from ratd.engine.state import contact_field, copied, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws import jkr
-from ratd.laws.contact_fields import NCX, NCY, NCZ
+from ratd.laws.contact_fields import LANES, NCX, NCY, NCZ
+from ratd.laws.jkr_with_springs import NIX, NJX
 from ratd.observables.energy import kinetic, momenta
 from systems import tree
 
@@ -33,6 +34,17 @@ def cluster(speed=0.0, integrator=None, law=LAW):
     )  # fmt: skip
 
 
+def rolled(state, angle=0.2):
+    """The same with the pointers of all contacts turned by about an angle, as after rolling, sliding and twisting."""
+    rng = np.random.default_rng(4)
+    for k in range(state.counter[CONTACTS]):
+        for first in (NIX, NJX):
+            at = int(first) + LANES * np.arange(3) + k  # in the first block
+            pointer = state.contact[at] + rng.normal(size=3) * angle
+            state.contact[at] = pointer / np.linalg.norm(pointer)
+    return state
+
+
 def dense_matrix(state, theta, dt):
     """M' of velocities and spins, contact by contact from the definition of J."""
     rows = monomer_rows(state)
@@ -47,17 +59,19 @@ def dense_matrix(state, theta, dt):
         normal = normals[k]
         distance = np.linalg.norm(rows[i, X : X + 3] - rows[j, X : X + 3])
         a_i, a_j = rows[i, RADIUS], rows[j, RADIUS]
-        arm = distance / (a_i + a_j)
-        cross = np.array([[0, -normal[2], normal[1]], [normal[2], 0, -normal[0]], [-normal[1], normal[0], 0]])
-        slide, turn = np.zeros((3, 6 * n)), np.zeros((3, 6 * n))
-        for who, sign, a in ((i, 1.0, a_i), (j, -1.0, a_j)):
-            slide[:, 6 * who : 6 * who + 3] = sign * np.eye(3)
-            slide[:, 6 * who + 3 : 6 * who + 6] = arm * a * cross
-            turn[:, 6 * who + 3 : 6 * who + 6] = sign * np.eye(3)
         at = np.uint64(k)  # in the first block
-        k_n, k_s, k_r, k_t = LAW.stiffness(state.contact, at)
         along = np.outer(normal, normal)
         across = np.eye(3) - along
+        pointers = [np.array(pointer) for pointer in LAW.pointers(state.contact, at)]
+        seen = a_i * pointers[0] + a_j * pointers[1]
+        slide, turn = np.zeros((3, 6 * n)), np.zeros((3, 6 * n))
+        for who, sign, a, pointer in ((i, 1.0, a_i, pointers[0]), (j, -1.0, a_j, pointers[1])):
+            x, y, z = distance / (seen @ normal) * (pointer - across @ seen / (a_i + a_j))
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            slide[:, 6 * who : 6 * who + 3] = sign * np.eye(3)
+            slide[:, 6 * who + 3 : 6 * who + 6] = a * across @ cross
+            turn[:, 6 * who + 3 : 6 * who + 6] = sign * np.eye(3)
+        k_n, k_s, k_r, k_t = LAW.stiffness(state.contact, at)
         damping = LAW.damping_now(state.contact, at)
         for j_c, weight in (
             (slide, (theta * dt**2 * k_n + dt * damping) * along + theta * dt**2 * k_s * across),
@@ -67,8 +81,9 @@ def dense_matrix(state, theta, dt):
     return matrix
 
 
-def test_forces_are_weighed_by_the_matrix_of_the_contacts():
-    state = cluster()
+@pytest.mark.parametrize("angle", [0.0, 0.2])
+def test_forces_are_weighed_by_the_matrix_of_the_contacts(angle):
+    state = rolled(cluster(), angle)
     theta, dt = 0.5, 3e-11
     work = _work(state)
     make_matrix(state, LAW, BOX, theta, dt, work)
@@ -84,8 +99,9 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts():
     np.testing.assert_allclose(force[:, 4:7] / inertia[:, None], expected[:, 3:], rtol=1e-7)
 
 
-def test_rigid_motion_has_its_true_mass_and_is_not_calmed():
-    state = cluster()
+@pytest.mark.parametrize("angle", [0.0, 0.2])
+def test_rigid_motion_has_its_true_mass_and_is_not_calmed(angle):
+    state = rolled(cluster(), angle)
     work = _work(state)
     make_matrix(state, LAW, BOX, 0.5, 1e-10, work)
     rows = monomer_rows(state)

@@ -201,8 +201,10 @@ def make_matrix(state, law, box, theta, dt, work):
     Notes
     -----
     The unknowns of a monomer are v and a w, velocity and spin times radius, so that all blocks are masses. With n from
-    j to i and the arms a_i d/(a_i + a_j), where d is the distance of the centres, the contact points recede by
-    g = v_i - v_j + n x (arm_i w_i + arm_j w_j), which is 0 for a rigid motion.
+    j to i, the contact points slide by P g, P = 1 - n n^T and g = v_i - v_j + arm_i x (a_i w_i) + arm_j x (a_j w_j), which
+    is 0 for a rigid motion (`arms`). After rolling the arms are not along n, and a contact that twists slides as well.
+    Taken along n they would tell the step too little stiffness, and a grain that has rolled by more than about r_0 would
+    never come to rest.
     """
     factor = work.factor
     diagonal, lower = factor.diagonal, factor.lower
@@ -223,15 +225,17 @@ def make_matrix(state, law, box, theta, dt, work):
         n = (state.contact[at + NCX], state.contact[at + NCY], state.contact[at + NCZ])
         a_i = state.monomer[np.uint64(i) * _ROW + RADIUS]
         a_j = state.monomer[np.uint64(j) * _ROW + RADIUS]
-        arm = difference(state, edges, i, j, get_image(state, k))[3] / (a_i + a_j)
+        distance = difference(state, edges, i, j, get_image(state, k))[3]
+        p_i, p_j = law.pointers(state.contact, at)
+        arm_i, arm_j = arms(n, a_i, p_i, a_j, p_j, distance)
         k_n, k_s, k_r, k_t = law.stiffness(state.contact, at)
         k_n = weight * k_n + dt * law.damping_now(state.contact, at)
         k_s, k_r, k_t = weight * k_s, weight * k_r, weight * k_t
-        _blocks(block, n, k_n, k_s, k_r / (a_i * a_i), k_t / (a_i * a_i), 1.0, 1.0, arm)
+        _blocks(block, n, k_n, k_s, k_r / (a_i * a_i), k_t / (a_i * a_i), 1.0, 1.0, arm_i, arm_i)
         _add_block(diagonal, BLOCK * factor.place[i], block, False)
-        _blocks(block, n, k_n, k_s, k_r / (a_j * a_j), k_t / (a_j * a_j), -1.0, -1.0, arm)
+        _blocks(block, n, k_n, k_s, k_r / (a_j * a_j), k_t / (a_j * a_j), -1.0, -1.0, arm_j, arm_j)
         _add_block(diagonal, BLOCK * factor.place[j], block, False)
-        _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm)
+        _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm_i, arm_j)
         _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
     if not factorise(factor):
         state.scalar[FASTEST] = math.nan
@@ -239,24 +243,70 @@ def make_matrix(state, law, box, theta, dt, work):
 
 
 @jit(forceinline=True)
-def _blocks(block, n, k_n, k_s, k_r, k_t, sign_i, sign_j, arm):
-    """J_i^T K J_j of one contact, rows of i, with J = (sign, arm [n x]) and the stiffness of the spins added."""
+def arms(n, a_i, p_i, a_j, p_j, distance):
+    """Arms of a contact over the radii: its points recede by v_i - v_j + arm_i x (a_i w_i) + arm_j x (a_j w_j).
+
+    Parameters
+    ----------
+    n : tuple of float
+        Direction from j to i.
+    a_i, a_j : float
+        Radii [m].
+    p_i, p_j : tuple of float
+        Unit vectors from the contact to the centre of i, and from that of j to the contact, fixed in the monomers. After
+        rolling they are not along n.
+    distance : float
+        Of the centres [m].
+
+    Returns
+    -------
+    arm_i, arm_j : tuple of float
+        p_i and p_j scaled, less what the contact has slid, so that a rigid motion makes nothing recede.
+    """
+    x = a_i * p_i[0] + a_j * p_j[0]
+    y = a_i * p_i[1] + a_j * p_j[1]
+    z = a_i * p_i[2] + a_j * p_j[2]
+    along = x * n[0] + y * n[1] + z * n[2]
+    scale = distance / along
+    slid = 1.0 / (a_i + a_j)
+    x, y, z = slid * (x - along * n[0]), slid * (y - along * n[1]), slid * (z - along * n[2])
+    return (
+        (scale * (p_i[0] - x), scale * (p_i[1] - y), scale * (p_i[2] - z)),
+        (scale * (p_j[0] - x), scale * (p_j[1] - y), scale * (p_j[2] - z)),
+    )
+
+
+@jit(forceinline=True)
+def _blocks(block, n, k_n, k_s, k_r, k_t, sign_i, sign_j, arm_i, arm_j):
+    """J_i^T K J_j of one contact, rows of i, with J = (sign, P [arm x]) and the stiffness of the spins added.
+
+    P = 1 - n n^T. With t = n x arm, P [arm x] = [arm x] - n t^T.
+    """
+    t_i, t_j = _cross(n, arm_i), _cross(n, arm_j)
+    dot = arm_i[0] * arm_j[0] + arm_i[1] * arm_j[1] + arm_i[2] * arm_j[2]
     for r in range(3):
         for c in range(3):
             along = n[r] * n[c]
             across = (1.0 if r == c else 0.0) - along
             block[r, c] = sign_i * sign_j * (k_n * along + k_s * across)
-            block[r + 3, c + 3] = (arm * arm * k_s + k_r) * across + k_t * along
-    # [n x]
-    s = arm * k_s
+            # [arm_i x]^T P [arm_j x]
+            slide = (dot if r == c else 0.0) - arm_j[r] * arm_i[c] - t_i[r] * t_j[c]
+            block[r + 3, c + 3] = k_s * slide + k_r * across + k_t * along
+            # sign_i P [arm_j x], and sign_j of the transposed P [arm_i x]
+            block[r, c + 3] = -sign_i * k_s * n[r] * t_j[c]
+            block[r + 3, c] = -sign_j * k_s * t_i[r] * n[c]
+    # [arm x] itself
     for r in range(3):
         c, d = (r + 1) % 3, (r + 2) % 3
-        block[r, 3 + r] = block[3 + r, r] = 0.0
-        block[r, 3 + c] = -sign_i * s * n[d]
-        block[r, 3 + d] = sign_i * s * n[c]
-        # its transpose
-        block[3 + c, r] = -sign_j * s * n[d]
-        block[3 + d, r] = sign_j * s * n[c]
+        block[r, 3 + c] -= sign_i * k_s * arm_j[d]
+        block[r, 3 + d] += sign_i * k_s * arm_j[c]
+        block[3 + c, r] -= sign_j * k_s * arm_i[d]
+        block[3 + d, r] += sign_j * k_s * arm_i[c]
+
+
+@jit(forceinline=True)
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @jit(forceinline=True)

@@ -24,11 +24,13 @@ damping_now(contact, at)
     Damping coefficient [kg/s] of the contact as it is.
 contact_radius(contact, at)
     Radius of the contact area [m].
+pointers(contact, at)
+    Unit vectors, fixed in the monomers, from the contact to the centre of i, and from the centre of j to the contact.
 stiffness(contact, at)
     k_n, k_s [N/m] and k_r, k_t [N m] of a contact, not below those of any state that it may reach in a step.
 
-What a law does not have is an error when it is compiled: the semi-implicit step asks for `stiffness` and
-`damping_now`, stresses for `contact_radius`. `tests/laws/test_own_law.py` adds a law in one file. A contact begins
+What a law does not have is an error when it is compiled: the semi-implicit step asks for `pointers`,
+`stiffness` and `damping_now`, stresses for `contact_radius`. `tests/laws/test_own_law.py` adds a law in one file. A contact begins
 when two surfaces touch.
 
 jkr_with_springs         the law of Johnson, Kendall & Roberts with springs of limited displacement: `jkr`

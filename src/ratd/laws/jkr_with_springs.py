@@ -402,6 +402,12 @@ class JKR(NamedTuple):
     def contact_radius(self, contact, at):
         return contact[at + RADIUS_0] * contact[at + S] ** 2
 
+    def pointers(self, contact, at):
+        return (
+            (-contact[at + NIX], -contact[at + NIY], -contact[at + NIZ]),
+            (contact[at + NJX], contact[at + NJY], contact[at + NJZ]),
+        )
+
     def stiffness(self, contact, at):
         # The normal stiffness at equilibrium is 1.2 F_C/delta_0; 2.5 covers contacts pressed to 4 delta_0.
         s = contact[at + S]
