@@ -28,6 +28,10 @@ from ratd.experiments.spin_up.figures.figure6 import axis_ratios, figure6
 from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure10 import figure10
+from ratd.experiments.spin_up.figures.fragments import fragments
+from ratd.experiments.spin_up.figures.law import law
+from ratd.experiments.spin_up.figures.marks import marks
+from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.pairs import force_controlled_omega
 from ratd.experiments.spin_up.printed import TABLE_3
@@ -48,7 +52,7 @@ from ratd.pictures.style import (
     styled,
     type_style,
 )
-from synthetic_runs import make_run, make_table
+from synthetic_runs import make_fragments, make_run, make_table, with_all_marks
 
 SIZES = (50e-9, 75e-9, 100e-9)
 PANEL_SIZES = (200e-9, 350e-9, 500e-9)
@@ -89,6 +93,11 @@ def full_figures():
         "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
         "figure8": figure8(table, fit=fit_ensemble(table, n_bootstrap=5)),
         "figure10": figure10(made_up_pairs()),
+        "overview": overview(table),
+        "overview of both": overview(table, table, table.assign(firm_bound=table["cut_bound"])),
+        "law": law(table),
+        "marks": marks(with_all_marks(table)),
+        "fragments": fragments(make_fragments(), "prescribed"),
     }
 
 

@@ -55,10 +55,11 @@ def law(table, mark="omega_mass_75", materials=None):
     InputError
         If no type has grains of three sizes.
     """
-    curved, straight = (fit(table, mark, materials).set_index("type") for fit in (curved_law, size_law))
-    kinds = [kind for kind in type_style(table["type"]) if kind in curved.index] if len(curved) else []
-    if not kinds:
+    curved, straight = (fit(table, mark, materials) for fit in (curved_law, size_law))
+    if not len(curved):
         raise InputError("law: give grains of at least three sizes of a type")
+    curved, straight = curved.set_index("type"), straight.set_index("type")
+    kinds = [kind for kind in type_style(table["type"]) if kind in curved.index]
     table = table[table[mark].astype(float) > 0]
     title = f"{plural(len(table), 'grain')}, {drive_text(drive_of(table))}\n$\\omega$ {MARK_TEXT.get(mark, mark)}"
     figure = new_figure(ONE_COLUMN, (0.95 + 0.2 * len(kinds)) * ONE_COLUMN, title)
