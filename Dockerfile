@@ -9,4 +9,4 @@ WORKDIR /ratd
 COPY . .
 RUN python3 -m venv .venv && .venv/bin/pip install --no-cache-dir -r environment.txt
 ENV PATH=/ratd/.venv/bin:$PATH
-CMD ["snakemake", "--cores", "2", "--configfile", "config/quick.yaml"]
+CMD ["snakemake", "--cores", "2", "all", "compression", "collision", "--configfile", "config/quick.yaml"]

@@ -1,7 +1,7 @@
 # The pipeline: grow grains, spin them up, find where each is disrupted, fit the ensemble, draw the figures.
 #
 #     snakemake --cores 2                                      the full paper
-#     snakemake --cores 2 --configfile config/quick.yaml       minutes
+#     snakemake --cores 2 --configfile config/quick.yaml       minutes, as with the next two
 #     snakemake --cores 2 compression                          another experiment: its own target, its own configs
 #     snakemake --cores 2 collision                            collisions of clusters
 #

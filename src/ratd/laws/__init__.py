@@ -39,6 +39,7 @@ tangential               formulae of sliding, rolling and twisting of the first
 material_pair            the constants of a contact between two materials
 contact_constants        constants of an adhesive contact at rest
 contact_fields           where each number of a contact stands
+thermal                  how long a contact holds a pull against heat; no run uses it
 """
 
 from importlib import import_module

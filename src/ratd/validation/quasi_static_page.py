@@ -30,7 +30,7 @@ TEMPLATE = Path("docs/templates/quasi_static.md")
 DOCUMENT = Path("docs/quasi_static.md")
 CHECKS = ("quasi_static", "remnant")
 ENSEMBLE = Path("docs/reproduction/data/spun_up/prescribed")
-BEFORE = Path("docs/reproduction/data/ensemble/prescribed/grains.nc")
+BEFORE = DATA / "without_waiting.nc"
 """The grains as the queue of spin-ups finds them, and as they were found by spin-ups that do not wait."""
 TYPES = ("BA", "BAM1", "BAM2")
 CLASSES = {"100 to 200 nm": (0, 250), "300 nm": (250, 400), "450 nm": (400, 600)}

@@ -16,7 +16,7 @@ def plan_of(*over, **compression):
     return plans.check(merge(load(*PAPER, *over), {"compression": compression}))
 
 
-@pytest.mark.parametrize("name", ["compression_quick", "compression_default"])
+@pytest.mark.parametrize("name", ["quick", "compression_default"])
 def test_configs_that_come_with_ratd_are_good(name):
     plan = plan_of(f"config/{name}.yaml")
     assert plan.results == f"results/{name}"

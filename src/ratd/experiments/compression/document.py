@@ -8,6 +8,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import pandas as pd
 
 from ratd.base.errors import FileError
 from ratd.experiments.compression.figures.monomers import name_of
@@ -26,7 +27,7 @@ FIGURES = Path("docs/compression")
 TEMPLATE = Path("docs/templates/compression.md")
 DOCUMENT = Path("docs/compression.md")
 CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/compression_default.yaml")
-SPUN = Path("docs/reproduction/data/ensemble/prescribed/grains.nc")
+SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
 
 
@@ -73,7 +74,7 @@ def read_data(data=DATA, spun=SPUN):
         raise FileError(f"{data / 'sets'}: holds no fiducial.nc, which all sets are compared with")
     tension = data / "tension.nc"
     entries = io.read(tension, "tension_set") if tension.is_file() else None
-    grains = spun_up(io.read(spun, "table").to_pandas()) if Path(spun).is_file() else None
+    grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
     peer = data / "lammps.nc"
     lammps = io.read(peer, "validation_compression").to_dataframe() if peer.is_file() else None
     return sets, entries, grains, lammps

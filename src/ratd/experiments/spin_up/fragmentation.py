@@ -17,7 +17,6 @@ from ratd.base.errors import InputError
 from ratd.base.statistics import drawn_counts, equal_weights, mean_of
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
 from ratd.pipeline import io
-from ratd.pipeline.blocks import rows as rows_of
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
@@ -148,26 +147,38 @@ def fragment_table(dataset):
     return table
 
 
-def read_fragments(folder):
-    """Fragments of the grains that the queue of spin-ups has finished, as `fragment_table` gives them.
+def read_spun_up_fragments(folder):
+    """Fragments of the grains that the queue of spin-ups has finished.
 
     Parameters
     ----------
     folder : path-like
-        Of one drive, below that of `ratd.experiments.spin_up.study`.
+        As of `ratd.experiments.spin_up.grain_table.read_spun_up`.
 
     Returns
     -------
     pandas.DataFrame
-
-    Raises
-    ------
-    InputError
-        If there is no grain.
+        As `fragment_table` makes it.
     """
-    paths = sorted(Path(folder).glob("*.nc"))
-    found = [row for path in paths for row in rows_of(io.read(path, "spun_up"), "spun_up")]
-    return fragment_table(join([fragmentation(row, row) for row in found]))  # a row holds fragments and marks
+    files = [io.read(path, "spun_up") for path in sorted(Path(folder).glob("*.nc"))]
+    grains = pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "material": file.attrs["material"],
+                    "type": file.attrs["type"],
+                    "grain_mass": file["initial_mass"].values,
+                    **{name: file[name].values for name in ("a_eff", "seed", "omega_disr", "mass_fraction_disr")},
+                    "row_size_fragment": file["row_size_fragment"].values,
+                }
+            )
+            for file in files
+        ]
+    )
+    joined = xr.Dataset({name: ("row", grains[name].to_numpy()) for name in grains})
+    for name in FRAGMENT_COLUMNS:
+        joined[name] = ("fragment", np.concatenate([file[name].values for file in files]))
+    return fragment_table(joined)
 
 
 def size_class(a_eff):

@@ -12,9 +12,18 @@ from ratd.base.errors import InputError
 from ratd.experiments.spin_up.cells import as_frame, size_key, sort_cells
 from ratd.experiments.spin_up.marks import VARIABLES as MARK_COLUMNS
 from ratd.pipeline import io
-from ratd.pipeline.blocks import rows
+from ratd.pipeline.kinds import kind_of
 
-__all__ = ["COLUMNS", "GRAIN_COLUMNS", "KEYS", "RUN_COLUMNS", "grain_table", "read_spun_up", "table_dataset"]
+__all__ = [
+    "COLUMNS",
+    "GRAIN_COLUMNS",
+    "KEYS",
+    "RUN_COLUMNS",
+    "grain_table",
+    "read_ensemble",
+    "read_spun_up",
+    "table_dataset",
+]
 
 KEYS = ("material", "type", "a_eff", "seed")
 """The columns that together name one grain."""
@@ -134,8 +143,37 @@ def read_spun_up(folder):
     pandas.DataFrame
         As `grain_table` makes it.
     """
-    paths = sorted(Path(folder).glob("*.nc"))
-    return grain_table(marks=[row for path in paths for row in rows(io.read(path, "spun_up"), "spun_up")])
+    return grain_table(marks=pd.concat([_spun_up(path) for path in sorted(Path(folder).glob("*.nc"))]))
+
+
+def _spun_up(path):
+    """Table of a file of the queue, without the fragments."""
+    file = io.read(path, "spun_up")
+    table = file.drop_dims("fragment").to_dataframe().reset_index(drop=True)
+    reasons = kind_of("spun_up").variables["end_reason"].flags
+    table["end_reason"] = [reasons[value] for value in table["end_reason"]]
+    return table.assign(**{name: file.attrs[name] for name in ("material", "type", "drive")})
+
+
+def read_ensemble(grown, folder):
+    """Table of the grains that the queue of spin-ups has finished, with what each was as grown.
+
+    Parameters
+    ----------
+    grown : path-like
+        A table of grains as grown, which may hold more of them.
+    folder : path-like
+        As of `read_spun_up`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `grain_table` makes it.
+    """
+    marks = read_spun_up(folder)
+    grains = io.read(grown, "table").to_pandas()[list(GRAIN_COLUMNS)]
+    table = grain_table(grains, marks)
+    return table[table["drive"] != ""].reset_index(drop=True)
 
 
 def table_dataset(table, dim="grain"):

@@ -1,0 +1,193 @@
+"""What the paper says of the spin-up, one finding after the other, beside what the grains here do.
+
+A finding is *yes* where ours keeps its rule, *no* where it does not by more than two standard errors, *open* between.
+The rules stand in the document beside the verdicts.
+"""
+
+import math
+
+import numpy as np
+
+from ratd.base.statistics import mean_of, median_of, rank_correlation
+from ratd.base.units import NM
+from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
+from ratd.experiments.spin_up.findings import MARK, median, middle, of_class
+from ratd.experiments.spin_up.fragmentation import fragment_shares
+from ratd.experiments.spin_up.oblateness import oblate_share
+from ratd.pipeline.documents import Measured
+
+__all__ = ["claims", "fragment_values", "grown_claims", "is_above", "is_below", "is_within"]
+
+BAM = ("BAM1", "BAM2")
+
+
+def is_above(found, limit):
+    """Verdict: found > limit, a Measured and a number."""
+    return "open" if abs(found.value - limit) < 2.0 * found.error else "yes" if found.value > limit else "no"
+
+
+def is_below(found, limit):
+    """Verdict: found < limit."""
+    return {"yes": "no", "no": "yes", "open": "open"}[is_above(found, limit)]
+
+
+def is_within(found, low, high):
+    """Verdict: low < found < high."""
+    verdicts = {is_above(found, low), is_below(found, high)}
+    return "no" if "no" in verdicts else "open" if "open" in verdicts else "yes"
+
+
+def all_of(verdicts):
+    """Verdict: all of several hold."""
+    verdicts = set(verdicts)
+    return "no" if "no" in verdicts else "open" if "open" in verdicts else "yes"
+
+
+def claims(letter, table, fragments):
+    """Findings on the spin-ups of one drive.
+
+    Parameters
+    ----------
+    letter : str
+        The first letter of the names.
+    table : pandas.DataFrame
+        As `ratd.experiments.spin_up.findings.beside_print` returns it.
+    fragments : pandas.DataFrame
+        As `ratd.experiments.spin_up.fragmentation.fragment_table` returns it.
+
+    Returns
+    -------
+    dict
+        Name of a slot -> value; verdicts begin with the letter and ``holds``.
+    """
+    values = {} | _where(letter, table) | _how(letter, table, fragments) | _shapes(letter, table)
+    return values
+
+
+def _where(letter, table):
+    """omega itself, and how it goes with type and size."""
+    ratio = median(table["omega_disr"] / table["printed"], cell_of(table))
+    low, high = (table["omega_disr"].min(), table["omega_disr"].max())
+    values = {
+        f"{letter}.disr over print": ratio,
+        f"{letter}.holds level": is_within(ratio, 0.8, 1.25),
+        f"{letter}.holds range": "yes" if 2.5e8 < low and high < 1e10 else "no",
+    }
+    slopes_above = []
+    for kind in TYPES:
+        part = of_class(table[table["type"] == kind], "large")
+        x, y = np.log(part["a_eff"]), np.log(part["omega_disr"])
+        slope, error = _slope(x, y, part)
+        slopes_above.append(Measured(slope, error))
+    values[f"{letter}.holds limit"] = all_of(is_within(slope, -0.25, 0.25) for slope in slopes_above)
+    values[f"{letter}.steepest"] = min(slope.value for slope in slopes_above)
+    values[f"{letter}.flattest"] = max(slope.value for slope in slopes_above)
+    order = table.assign(log=np.log(table["omega_disr"]), size=size_key(table["a_eff"]))
+    means = order.groupby(["material", "type", "size"])["log"].mean().unstack("type")
+    share = float(((means["BA"] < means["BAM1"]) & (means["BA"] < means["BAM2"])).mean())
+    values[f"{letter}.BA first"] = share
+    values[f"{letter}.holds BA first"] = "yes" if share == 1.0 else "open" if share > 0.9 else "no"
+    return values
+
+
+def _slope(x, y, part):
+    from ratd.base.statistics import equal_weights, slope_error, slope_of
+
+    slope, influence = slope_of(x, y, part["material"], equal_weights(cell_of(part)))
+    return slope, slope_error(influence)
+
+
+def _how(letter, table, fragments):
+    """How the mass goes, and what the contacts do."""
+    values = {}
+    both = table[MARK] / table["omega_disr"]
+    near = [median(both[table["type"] == kind], cell_of(table[table["type"] == kind])) for kind in TYPES]
+    lost = 1.0 - table["mass_fraction_disr"]
+    for kind, ratio in zip(TYPES, near, strict=True):
+        values[f"{letter}.quarter over disr {kind}"] = ratio
+        values[f"{letter}.lost at disr {kind}"] = 100.0 * median_of(lost[table["type"] == kind])["median"]
+    values[f"{letter}.holds quarter"] = all_of(is_within(ratio, 0.8, 1.25) for ratio in near)
+    largest = fragments[fragments["half"]].groupby("grain")[["mass_fraction"]].max()
+    kinds = fragments.groupby("grain")["type"].first()[largest.index]
+    pieces = {kind: median(largest.loc[kinds == kind, "mass_fraction"]) for kind in TYPES}
+    for kind, piece in pieces.items():
+        values[f"{letter}.largest piece {kind}"] = piece
+    values[f"{letter}.holds continuous"] = all_of(is_below(piece, 0.1) for piece in pieces.values())
+    shares = fragment_shares(fragments, "half")
+    single = shares[(shares["class"] == "1 monomer") & shares["type"].isin(BAM)]
+    found = [Measured(row["mass_share"], row["mass_share_error"]) for row in single.to_dict("records")]
+    for kind, share in zip(single["type"], found, strict=True):
+        values[f"{letter}.single {kind}"] = Measured(100 * share.value, 100 * share.error)
+    values[f"{letter}.holds single"] = all_of(is_above(share, 0.8) for share in found)
+    gain = table["n_contacts_max"] / table["n_contacts"]
+    gains = {kind: median(gain[table["type"] == kind]) for kind in TYPES}
+    for kind, value in gains.items():
+        values[f"{letter}.contacts {kind}"] = value
+    values[f"{letter}.contacts BAM2 grain"] = float((gain[table["type"] == "BAM2"] > 1.0).mean())
+    values[f"{letter}.holds contacts"] = "yes" if gains["BAM2"].value > 1.0 else "no"
+    return values
+
+
+def _shapes(letter, table):
+    """Whether grains become oblate."""
+    bam = table[table["type"].isin(BAM)]
+    (start, start_error, *_), (end, end_error, *_) = (oblate_share(bam, when) for when in ("start", "disr"))
+    change = Measured(end - start, math.hypot(start_error, end_error))
+    stretch = (bam["axis_b_disr"] / bam["axis_a_disr"]).replace(np.inf, np.nan)
+    return {
+        f"{letter}.oblate start": Measured(100 * start, 100 * start_error),
+        f"{letter}.oblate disr": Measured(100 * end, 100 * end_error),
+        f"{letter}.oblate change": Measured(100 * change.value, 100 * change.error),
+        f"{letter}.holds oblate": all_of([is_above(change, 0.0), is_above(Measured(end, end_error), 0.5)]),
+        f"{letter}.most oblate": float(stretch.max()),
+        f"{letter}.holds b/a": "yes" if 4.0 < stretch.max() < 6.25 else "no",
+    }
+
+
+def grown_claims(grown):
+    """Findings on the grains as grown."""
+    values = {}
+    for kind, (low, high) in {"BA": (0.40, 0.85), "BAM1": (0.35, 0.70), "BAM2": (0.35, 0.50)}.items():
+        part = grown[grown["type"] == kind]
+        large = part[part["nm"] > 275]
+        mean = Measured(*mean_of(large["porosity"], cell_of(large)))
+        values[f"g.porosity {kind}"] = mean
+        values[f"g.porosity {kind} range"] = f"{part['porosity'].min():.2f}–{part['porosity'].max():.2f}"
+        means = part.groupby("nm")["porosity"].mean()
+        inside = low / 1.1 < means.min() and means.max() < high * 1.1
+        values[f"g.holds porosity {kind}"] = "yes" if inside else "no"
+        values[f"g.porosity {kind} 550"] = float(means.iloc[-1])
+        values[f"g.porosity {kind} 50"] = float(means.iloc[0])
+    share, error, count, of = oblate_share(grown.rename(columns=_AS_START), "start")
+    values |= {
+        "g.oblate": Measured(100 * share, 100 * error),
+        "g.holds oblate": is_within(Measured(share, error), 0.45, 0.55),
+    }
+    ba = grown[(grown["type"] == "BA") & (grown["fractal_dimension"] < 3)]
+    values["g.dimension"] = median(ba["fractal_dimension"])
+    values["g.holds dimension"] = is_within(values["g.dimension"], 1.9, 2.1)
+    known = grown[grown["fractal_dimension"] < 3]
+    small, large = (known[np.isclose(known["nm"], size)]["fractal_dimension"] for size in (150, 550))
+    change = Measured(large.median() - small.median(), math.hypot(median(large).error, median(small).error))
+    values["g.dimension change"], values["g.holds dimension change"] = change, is_above(change, 0.0)
+    radius = grown["mean_monomer_radius"] / NM
+    values["g.radius"] = Measured(*mean_of(radius, cell_of(grown)))
+    values["g.radius range"] = middle(radius)
+    values["g.holds radius"] = is_within(values["g.radius"], 18.0, 22.0)
+    correlation = rank_correlation(grown["n_monomers"].to_numpy(), grown["a_eff"].to_numpy())
+    values["g.monomers with size"] = correlation
+    return values
+
+
+_AS_START = {f"axis_{axis}": f"axis_{axis}_start" for axis in "abc"}
+
+
+def fragment_values(letter, fragments):
+    """Where the mass goes that leaves while the first half does: shares [%] by type and class of size."""
+    values = {}
+    for name, (low, high) in {"small": (40, 275), "large": (275, 600)}.items():
+        part = fragments[(fragments["a_eff"] / NM).between(low, high)]
+        for row in fragment_shares(part, "half").to_dict("records"):
+            start = f"{letter}.fragments {row['type']} {name} {row['class']}"
+            values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
+    return values

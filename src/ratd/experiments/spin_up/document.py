@@ -1,0 +1,228 @@
+"""docs/reproduction.md, its appendix and their figures, drawn again from the data beside them.
+
+python -m ratd.experiments.spin_up.document collect RESULTS    take what the pipeline made, such as results/paper
+python -m ratd.experiments.spin_up.document redraw             figures and text, in seconds
+
+The ensemble itself grows in docs/reproduction/data/spun_up, see `ratd.experiments.spin_up.study`.
+"""
+
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pandas as pd
+
+from ratd.aggregates.files import read_grains
+from ratd.base.errors import FileError
+from ratd.experiments.spin_up import claims, side_findings
+from ratd.experiments.spin_up import findings as numbers
+from ratd.experiments.spin_up.figures.figure1 import figure1
+from ratd.experiments.spin_up.figures.figure2 import figure2
+from ratd.experiments.spin_up.figures.figure4 import figure4
+from ratd.experiments.spin_up.figures.figure5 import figure5
+from ratd.experiments.spin_up.figures.figure6 import figure6
+from ratd.experiments.spin_up.figures.figure7 import figure7
+from ratd.experiments.spin_up.figures.figure8 import figure8
+from ratd.experiments.spin_up.figures.figure9 import figure9
+from ratd.experiments.spin_up.figures.figure10 import figure10
+from ratd.experiments.spin_up.figures.radiation import radiation
+from ratd.experiments.spin_up.fragmentation import fragment_table, read_spun_up_fragments
+from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, read_ensemble, read_spun_up
+from ratd.experiments.spin_up.plan import load
+from ratd.experiments.spin_up.run_files import read_runs
+from ratd.experiments.spin_up.surviving import limits
+from ratd.pictures.style import save
+from ratd.pipeline import blocks, io
+from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.documents import command, fill
+
+__all__ = ["DATA", "Data", "collect", "findings", "main", "read_data", "redraw"]
+
+DATA = Path("docs/reproduction/data")
+FIGURES = Path("docs/reproduction")
+DOCUMENTS = {
+    Path("docs/templates/reproduction.md"): Path("docs/reproduction.md"),
+    Path("docs/templates/reproduction_appendix.md"): Path("docs/reproduction_appendix.md"),
+}
+CONFIGS = ("config/config.yaml", "config/spin_up.yaml")
+DRIVEN, PRINTED = "prescribed", "literal"
+DRIVEN_TABLE = DATA / "driven.csv"
+"""The driven grains as a table for everybody, docs/compression.md for one."""
+TABLE_COLUMNS = (
+    "material", "type", "a_eff", "seed", "n_monomers", "n_contacts", "filling_factor", "mean_monomer_radius",
+    "cut_bound", "omega_first_loss", "omega_mass_75", "omega_disr",
+)  # fmt: skip
+TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
+"""Kind of file, and name beside the document -> where the pipeline has it."""
+
+
+class Data(NamedTuple):
+    """What stands beside the document.
+
+    Attributes
+    ----------
+    grown, driven, printed : pandas.DataFrame
+        All grains as grown, and those that were spun up, with Eq. 33 as printed.
+    recomputed : pandas.DataFrame or None
+        Grains of `printed` that the queue has computed anew.
+    fragments : dict of str to pandas.DataFrame
+        Drive -> fragments.
+    firm : pandas.DataFrame
+    runs : dict of str to list of xarray.Dataset
+        Runs of figures 4 and 5: ``figure4/prescribed`` and so on.
+    grains : list of ratd.Grain
+        Those of figure 1.
+    tables : dict of str to pandas.DataFrame
+        ``parameters`` (figure 9), ``formulae``.
+    pairs : list of pandas.DataFrame
+        Of figure 10.
+    """
+
+    grown: pd.DataFrame
+    driven: pd.DataFrame
+    printed: pd.DataFrame
+    recomputed: pd.DataFrame | None
+    fragments: dict
+    firm: pd.DataFrame
+    runs: dict
+    grains: list
+    tables: dict
+    pairs: list
+
+
+def collect(results, data=DATA):
+    """Copy what the figures need from a folder of results of the pipeline.
+
+    Parameters
+    ----------
+    results : path-like
+        Such as ``results/paper``.
+    data : path-like
+    """
+    results, data, plan = Path(results), Path(data), load(*CONFIGS)
+    for name, source in TABLES.items():
+        _copy(results / source, data / f"{name}.nc", name)
+    for material in plan.config["materials"]:
+        _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
+    path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
+    _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
+    (source,) = plan.figure5_files(path, DRIVEN)
+    file = _read(source, "spinup")
+    wanted = plan.config["figures"]["figure5"]["seed"]
+    rows = [row for row in blocks.rows(file, "spinup") if row.attrs["seed"] == wanted]
+    kept = {name: file.attrs[name] for name in ("settings", "settings_hash") if name in file.attrs}
+    block = blocks.block(rows, "spinup", blocks.material_of(file), kept)
+    io.write(data / f"figure5/{DRIVEN}.nc", block, "spinup")
+
+
+def _read(path, kind):
+    if not Path(path).is_file():
+        raise FileError(f"{path}: is missing; `snakemake --cores 2 {path}` makes it")
+    return io.read(path, kind)
+
+
+def _copy(source, target, kind):
+    _read(source, kind)
+    with atomic(target) as temporary:
+        temporary.write_bytes(source.read_bytes())
+
+
+def read_data(data=DATA):
+    """The data beside the document."""
+    data = Path(data)
+    tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
+    printed = io.read(data / "literal.nc", "table").to_pandas()
+    anew = data / "spun_up" / PRINTED
+    return Data(
+        grown=numbers.beside_print(io.read(data / "grown.nc", "table").to_pandas()[list(GRAIN_COLUMNS)]),
+        driven=numbers.beside_print(read_ensemble(data / "grown.nc", data / "spun_up" / DRIVEN)),
+        printed=numbers.beside_print(printed),
+        recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
+        fragments={
+            DRIVEN: read_spun_up_fragments(data / "spun_up" / DRIVEN),
+            PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
+        },
+        firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
+        runs={
+            f"{name}/{drive}": read_runs(data / name / f"{drive}.nc")
+            for name in ("figure4", "figure5")
+            for drive in (DRIVEN, PRINTED)
+        },
+        grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
+        tables=tables,
+        pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
+    )
+
+
+def findings(data):
+    """Values of the slots of both documents.
+
+    Parameters
+    ----------
+    data : Data
+
+    Returns
+    -------
+    dict
+        Name of a slot -> number or text.
+    """
+    values = {}
+    for letter, table, drive in (("d", data.driven, DRIVEN), ("p", data.printed, PRINTED)):
+        fragments = data.fragments[drive]
+        values |= numbers.of_drive(letter, table) | numbers.of_table_3(letter, table)
+        values |= claims.claims(letter, table, fragments) | claims.fragment_values(letter, fragments)
+    values |= numbers.of_law(data.driven) | numbers.marks_compared(data.driven)
+    values |= numbers.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
+    values |= side_findings.of_ways(data.tables["parameters"]) | side_findings.of_pairs(data.pairs)
+    values |= side_findings.of_formulae(data.tables["formulae"])
+    values |= side_findings.of_curve(data.driven, data.grown) | side_findings.of_prediction(data.driven)
+    values |= side_findings.composition_tables() | side_findings.of_heat()
+    values |= limits(data.driven, data.grown, mark=numbers.MARK)
+    if data.recomputed is not None:
+        values |= side_findings.recomputed(data.printed, data.recomputed)
+    values["cells.quarter"] = numbers.cell_medians(data.driven)
+    values["cells.disr"] = numbers.cell_medians(data.driven, "omega_disr")
+    values["cells.printed"] = numbers.cell_medians(data.printed, "omega_disr")
+    return values
+
+
+def figures(data):
+    """The figures of the document, a name and a figure each."""
+    plan = load(*CONFIGS)
+    for drive, table in ((DRIVEN, data.driven), (PRINTED, data.printed)):
+        six, eight = plan.figure("figure6", drive), plan.figure("figure8", drive)
+        yield f"figure4_{drive}", figure4(data.runs[f"figure4/{drive}"], drive=drive)
+        yield f"figure7_{drive}", figure7(table, drive=drive, grown=data.grown)
+        if drive == DRIVEN:
+            yield f"figure5_{drive}", figure5(data.runs[f"figure5/{drive}"][0], drive=drive)
+            yield f"figure6_{drive}", figure6(table, six["material"], six["sizes"], drive=drive)
+            yield f"figure8_{drive}", figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown)
+    yield "figure1", figure1(data.grains)
+    yield "figure2", figure2(data.grown)
+    yield "radiation", radiation(data.driven, data.grown, drive=DRIVEN)
+    yield "figure9_prescribed", figure9(data.tables["parameters"])
+    yield "figure10", figure10(pd.concat(data.pairs, ignore_index=True))
+
+
+def redraw(folder=".", into=None):
+    """Write the document, its appendix and the figures, into another folder where one is given."""
+    folder = Path(folder)
+    into = folder if into is None else Path(into)
+    data = read_data(folder / DATA)
+    for name, figure in figures(data):
+        save(figure, into / FIGURES / f"{name}.png")
+    with atomic(into / DRIVEN_TABLE) as temporary:
+        data.driven[list(TABLE_COLUMNS)].to_csv(temporary, index=False, float_format="%.6g")
+    values = findings(data)
+    for template, document in DOCUMENTS.items():
+        text = (folder / template).read_text(encoding="utf-8")
+        write_text(into / document, fill(text, values, str(template)))
+
+
+def main(words):
+    """The command line; returns the exit code."""
+    return command(words, __doc__, collect, redraw)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

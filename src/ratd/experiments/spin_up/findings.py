@@ -1,0 +1,227 @@
+"""Every number that docs/reproduction.md tells of the ensemble, from its tables.
+
+The names of the values are those of the slots in docs/templates/reproduction.md; what belongs to a drive begins with
+its letter: ``d`` for the consistent model (`prescribed`), ``p`` for the printed terms of the frame (`literal`).
+"""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.base.materials import get_material
+from ratd.base.statistics import mean_of, median_of
+from ratd.base.units import NM
+from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
+from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
+from ratd.experiments.spin_up.size_law import size_law, slopes
+from ratd.pipeline.documents import Measured
+
+__all__ = [
+    "CLASSES", "MARK", "MARKS", "beside_print", "geometric_mean", "marks_compared", "of_drive", "of_law", "of_table_3",
+    "strength_omega", "what_contacts_hold",
+]  # fmt: skip
+
+MARK = "omega_mass_75"
+"""The mark that the document gives."""
+MARKS = {"omega_first_loss": "first loss", "omega_mass_75": "a quarter", "omega_disr": "omega_disr"}
+CLASSES = {"small": (40, 275), "large": (275, 600)}
+"""Classes of a_eff [nm]: 50 to 250, and 300 to 550 nm."""
+AT = (50, 300, 550)
+"""Sizes [nm] of which numbers are told."""
+
+
+def beside_print(table):
+    """The table with ``printed``, Eq. 33 with A and alpha as printed in Table 3 [rad/s], for each grain."""
+    return table.assign(printed=eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS), nm=table["a_eff"] / NM)
+
+
+def of_class(table, name):
+    """The rows of a class of size."""
+    return table[table["nm"].between(*CLASSES[name])]
+
+
+def geometric_mean(values, cell):
+    """Geometric mean of positive values, all cells counting alike, and its error, Measured."""
+    mean, error = mean_of(np.log(np.asarray(values, dtype=float)), cell)
+    return Measured(math.exp(mean), math.exp(mean) * error)
+
+
+def median(values, cell=None):
+    """Median with its error, Measured."""
+    found = median_of(values, cell=cell)
+    return Measured(found["median"], found["error"])
+
+
+def middle(values):
+    """Where the middle two thirds of some values lie, as a text."""
+    found = median_of(values)
+    return f"{found['low']:.3g}–{found['high']:.3g}"
+
+
+def of_drive(letter, table):
+    """How many grains a drive has, where they part, and how that goes with size.
+
+    Parameters
+    ----------
+    letter : str
+        The first letter of the names.
+    table : pandas.DataFrame
+        As `beside_print` returns it.
+
+    Returns
+    -------
+    dict
+        Name of a slot -> value.
+    """
+    values = {f"{letter}.n": len(table), f"{letter}.seeds": int(table.groupby(cell_of(table)).size().median())}
+    values[f"{letter}.unfinished"] = int((~table["omega_disr"].notna()).sum())
+    ratio = table[MARK] / table["printed"]
+    values[f"{letter}.ratio"] = median(ratio, cell_of(table))
+    values[f"{letter}.ratio middle"] = middle(ratio)
+    values[f"{letter}.least"], values[f"{letter}.most"] = table["omega_disr"].min(), table["omega_disr"].max()
+    for kind in TYPES:
+        part = table[table["type"] == kind]
+        for size in AT:
+            here = part[np.isclose(part["nm"], size)]
+            values[f"{letter}.{kind} {size}"] = geometric_mean(here[MARK] / here["printed"], cell_of(here))
+            values[f"{letter}.{kind} {size} load"] = 1.0 / values[f"{letter}.{kind} {size}"].value ** 2
+    for mark, word in MARKS.items():
+        for row in slopes(table, mark).to_dict("records"):
+            for side in ("below", "above", "change"):
+                values[f"{letter}.slope {row['type']} {word} {side}"] = Measured(row[side], row[f"{side}_error"])
+    for other in ("BAM1", "BAM2"):
+        cells = table.assign(log=np.log(table["omega_disr"])).groupby(["material", "type", size_key(table["a_eff"])])
+        mean = cells["log"].mean().unstack("type")
+        lower = mean["BA"] < mean[other]
+        values[f"{letter}.BA over {other}"] = math.exp((mean["BA"] - mean[other]).mean())
+        values[f"{letter}.BA below {other}"] = int(lower.sum())
+    return values
+
+
+def of_law(table):
+    """What to use: C and p of a power of size for each mark, and the medians of all cells."""
+    values = {}
+    for mark, word in MARKS.items():
+        for row in size_law(table, mark).to_dict("records"):
+            start = f"law.{row['type']} {word}"
+            values |= {
+                f"{start} C": Measured(row["C"], row["C_error"]),
+                f"{start} p": Measured(row["p"], row["p_error"]),
+                f"{start} scatter": math.exp(row["scatter"]),
+                f"{start} n": row["n_grains"],
+            }
+    return values
+
+
+def cell_medians(table, mark=MARK):
+    """Medians of the cells [1e6 rad/s], a row a material and type, a column a size [nm]: a table of Markdown."""
+    grouped = table.groupby(["material", "type", "nm"])[mark].median() / 1e6
+    sizes = sorted(table["nm"].round().unique())
+    lines = ["| material | type | " + " | ".join(f"{size:.0f} nm" for size in sizes) + " |"]
+    lines += ["|---|---|" + "---|" * len(sizes)]
+    for material in MATERIALS:
+        for kind in TYPES:
+            row = grouped[material, kind]
+            cells = (row[np.isclose(row.index, size)] for size in sizes)
+            lines.append(f"| {material} | {kind} | " + " | ".join(_short(cell) for cell in cells) + " |")
+    return "\n".join(lines)
+
+
+def _short(cell):
+    return f"{cell.iloc[0]:.3g}" if len(cell) and np.isfinite(cell.iloc[0]) else "–"
+
+
+def marks_compared(table):
+    """The answer by each mark, of the drive of a table: over print, and the slopes are in `of_drive`."""
+    values = {}
+    for mark, word in MARKS.items():
+        for kind in TYPES:
+            for name in CLASSES:
+                part = of_class(table[table["type"] == kind], name)
+                known = part[part[mark] > 0]
+                values[f"marks.{kind} {name} {word}"] = geometric_mean(known[mark] / known["printed"], cell_of(known))
+    for kind in TYPES:
+        part = table[table["type"] == kind]
+        both = part[MARK] / part["omega_disr"]
+        values[f"marks.{kind} apart"] = float((np.abs(np.log(both)) > math.log(1.25)).mean())
+    return values
+
+
+def of_table_3(letter, table):
+    """A and alpha of Eq. 33 fitted to the grains, mark omega_disr as in the paper, beside Table 3."""
+    fit = fit_ensemble(table, PAPER_MEAN_RADIUS).isel(mean_radius=0)
+    values, held = {}, 0
+    for (material, kind), (A, alpha) in TABLE_3.items():
+        own = fit.sel(material=material, type=kind)
+        low, high = own["alpha_low"].item(), own["alpha_high"].item()
+        held += low <= alpha <= high
+        start = f"{letter}.table3 {material} {kind}"
+        values[f"{start} A"] = f"{own['A'].item():.2f} ({own['A_low'].item():.2f}–{own['A_high'].item():.2f})"
+        values[f"{start} alpha"] = f"{own['alpha'].item():.2f} ({low:.2f} to {high:.2f})".replace("-", "−")
+        values[f"{start} printed"] = f"{A:.2f}, {alpha:.2f}"
+    values[f"{letter}.table3 held"] = held
+    alphas = fit["alpha"].values
+    values[f"{letter}.alpha least"], values[f"{letter}.alpha most"] = float(alphas.min()), float(alphas.max())
+    return values
+
+
+def strength_omega(table):
+    """omega [rad/s] at which the mean tension in the mid-plane of each grain is the tensile strength of its material.
+
+    The grain counts as a sphere of its own mass and filling factor phi, its strength is 0.951 gamma/a phi^1.8 with the
+    mean radius a of its monomers (Tatsuuma et al. 2019).
+    """
+    found = np.empty(len(table))
+    for name in table["material"].unique():
+        here = (table["material"] == name).to_numpy()
+        material, rows = get_material(name), table[here]
+        phi, radius = rows["filling_factor"].to_numpy(), rows["mean_monomer_radius"].to_numpy()
+        strength = tensile_strength_tatsuuma2019(material.surface_energy, radius, phi)
+        outer = rows["a_eff"].to_numpy() * phi ** (-1.0 / 3.0)
+        found[here] = np.sqrt(strength / midplane_tension(1.0, material.density, phi, outer))
+    return pd.Series(found, index=table.index)
+
+
+def what_contacts_hold(grown, firm, table):
+    """Table 3 beside the firm bound of all grown grains, and the spun-up ones beside both bounds.
+
+    Parameters
+    ----------
+    grown : pandas.DataFrame
+        All grains as grown, as `beside_print` returns it.
+    firm : pandas.DataFrame
+        Their firm bounds.
+    table : pandas.DataFrame
+        The grains that were spun up, as `beside_print` returns it.
+    """
+    keys = ["material", "type", "size", "seed"]
+    firm = firm.assign(size=size_key(firm["a_eff"]))[[*keys, "firm_bound"]]
+    grown = grown.assign(size=size_key(grown["a_eff"])).merge(firm, on=keys)
+    table = table.assign(size=size_key(table["a_eff"])).merge(firm, on=keys)
+    above = grown["printed"] > grown["firm_bound"]
+    load = (grown["printed"] / grown["firm_bound"]) ** 2
+    values = {
+        "bound.grown": len(grown),
+        "bound.above": int(above.sum()),
+        "bound.largest below": float(grown.loc[~above, "nm"].max()),
+        "bound.load": float(load.median()),
+        "bound.small omega": float((grown["printed"] < 5e8).mean()),
+        "bound.over firm": int((table["omega_first_loss"] > table["firm_bound"]).sum()),
+        "bound.spun": len(table),
+    }
+    strength = strength_omega(table)
+    for kind in TYPES:
+        for name in CLASSES:
+            rows = of_class(table[table["type"] == kind], name)
+            start = f"bound.{kind} {name}"
+            values[f"{start} load"] = median(
+                load[(grown["type"] == kind) & grown["nm"].between(*CLASSES[name])].to_numpy()
+            )
+            for mark in ("omega_first_loss", MARK):
+                values[f"{start} {mark}"] = median(rows[mark] / rows["firm_bound"], cell_of(rows))
+            values[f"{start} strength"] = median(strength[rows.index] / rows[MARK], cell_of(rows))
+            values[f"{start} strength over print"] = median(strength[rows.index] / rows["printed"], cell_of(rows))
+    return values

@@ -1,0 +1,121 @@
+"""docs/reproduction.md: what is committed is what its data give, and its verdicts follow their rules."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ratd.base.errors import FileError
+from ratd.experiments.spin_up import document
+from ratd.experiments.spin_up.claims import all_of, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings import geometric_mean, of_drive, strength_omega, what_contacts_hold
+from ratd.experiments.spin_up.side_findings import composition_tables, of_pairs, recomputed
+from ratd.pipeline.documents import Measured
+
+ROOT = Path(__file__).parents[3]
+TYPES = ("BA", "BAM1", "BAM2")
+
+
+def test_the_documents_and_figures_are_those_of_the_data(tmp_path):
+    document.redraw(ROOT, tmp_path)
+    for page in (*document.DOCUMENTS.values(), document.DRIVEN_TABLE):
+        assert (tmp_path / page).read_bytes() == (ROOT / page).read_bytes(), "redraw the document"
+    drawn = sorted(path.name for path in (tmp_path / document.FIGURES).glob("*.png"))
+    assert drawn == sorted(path.name for path in (ROOT / document.FIGURES).glob("*.png"))
+    text = (ROOT / "docs/reproduction.md").read_text(encoding="utf-8")
+    assert [name for name in drawn if f"(reproduction/{name})" not in text] == []
+    # the referee's measure
+    assert text.count("\n") <= 250
+
+
+def test_collect_names_what_is_missing(tmp_path):
+    with pytest.raises(FileError, match=r"parameters/prescribed.nc: is missing; `snakemake --cores 2"):
+        document.collect(tmp_path, tmp_path / "data")
+
+
+def test_verdicts_need_two_standard_errors():
+    assert [is_above(Measured(value, 0.1), 1.0) for value in (1.3, 1.1, 0.9, 0.7)] == ["yes", "open", "open", "no"]
+    assert is_below(Measured(0.7, 0.1), 1.0) == "yes" and is_below(Measured(1.3, 0.1), 1.0) == "no"
+    assert is_within(Measured(1.0, 0.01), 0.9, 1.1) == "yes" and is_within(Measured(1.1, 0.01), 0.9, 1.1) == "open"
+    assert all_of(["yes", "open"]) == "open" and all_of(["open", "no", "yes"]) == "no" and all_of(["yes"]) == "yes"
+
+
+def grains(omega, sizes=(50, 300, 550)):
+    """Three grains a cell of q-S, omega being a function of type and size [nm] for the printed omega 1e9 rad/s."""
+    rows = []
+    for kind in TYPES:
+        for nm in sizes:
+            for seed, factor in enumerate((0.9, 1.0, 1.1)):
+                own = omega(kind, nm) * factor
+                rows.append(
+                    {
+                        "material": "q-S", "type": kind, "a_eff": nm * 1e-9, "nm": float(nm), "seed": seed,
+                        "printed": 1e9, "omega_first_loss": own, "omega_mass_75": own, "omega_disr": own,
+                        "filling_factor": 0.3, "mean_monomer_radius": 30e-9,
+                    }
+                )  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def test_omega_over_print_and_its_powers_of_size_are_found():
+    power = {"BA": -2.0, "BAM1": -1.5, "BAM2": -1.0}
+    table = grains(lambda kind, nm: 1e8 * (nm / 300.0) ** power[kind])
+    values = of_drive("d", table)
+    for kind in TYPES:
+        assert values[f"d.{kind} 300"].value == pytest.approx(0.1 * np.prod([0.9, 1.0, 1.1]) ** (1 / 3))
+        assert values[f"d.{kind} 300 load"] == pytest.approx(values[f"d.{kind} 300"].value ** -2)
+        assert values[f"d.slope {kind} a quarter above"].value == pytest.approx(power[kind])
+    assert values["d.n"] == 27 and values["d.seeds"] == 3
+    # BA falls fastest: below BAM1 at 550 nm alone, where there is one cell of each type and size
+    assert values["d.BA below BAM1"] == 1
+
+
+def test_the_error_of_a_geometric_mean_is_that_of_its_cells():
+    cell = np.repeat([0, 1], 3)
+    found = geometric_mean(np.exp([0.9, 1.0, 1.1, 3.9, 4.0, 4.1]), cell)
+    assert found.value == pytest.approx(np.exp(2.5))
+    assert found.error / found.value == pytest.approx(0.1 / np.sqrt(3) / np.sqrt(2))
+
+
+def test_grains_above_their_firm_bound_are_counted():
+    table = grains(lambda kind, nm: 1e8, sizes=(100, 400))
+    firm = table.assign(firm_bound=np.where(table["a_eff"] > 2e-7, 5e8, 2e9))
+    values = what_contacts_hold(table, firm, table)
+    assert values["bound.grown"] == 18 and values["bound.above"] == 9
+    assert values["bound.largest below"] == 100.0
+    assert values["bound.load"] == pytest.approx(0.5 * ((1e9 / 5e8) ** 2 + (1e9 / 2e9) ** 2))
+    assert values["bound.over firm"] == 0
+    assert values["bound.BA large omega_mass_75"].value == pytest.approx(0.2)
+
+
+def test_the_strength_of_tatsuuma_holds_a_sphere_together():
+    table = grains(lambda kind, nm: 1e8, sizes=(100,)).iloc[:1]
+    phi, radius, gamma, density = 0.3, 30e-9, 20e-3, 2650.0
+    outer = 1e-7 * phi ** (-1 / 3)
+    # mean tension in the mid-plane of a sphere that turns: 2/3 pi... of one half over the cross-section
+    x, w = np.polynomial.legendre.leggauss(40)
+    y, height = 0.5 * outer * (x + 1.0), 0.5 * outer * w
+    pull = np.sum(height * np.pi * (outer**2 - y**2) * y) * density * phi / (np.pi * outer**2)
+    expected = np.sqrt(0.951 * gamma / radius * phi**1.8 / pull)
+    assert strength_omega(table).item() == pytest.approx(expected, rel=1e-6)
+
+
+def test_pairs_are_within_the_printed_error_undamped_and_not_damped():
+    rows = {"start": ["damped", "undamped"], "parting_omega": [1.34, 1.005], "force_controlled_omega": [1.3416] * 2}
+    values = of_pairs([pd.DataFrame(rows | {"eq35_omega": [1.0, 1.0]})])
+    assert values["pairs.holds"] == "open" and values["pairs.undamped worst"] == pytest.approx(0.005)
+    assert values["pairs.damped error"] == pytest.approx(0.0016 / 1.3416, rel=1e-6)
+
+
+def test_grains_that_were_computed_anew_are_compared_with_themselves():
+    older = grains(lambda kind, nm: 1e8)
+    newer = grains(lambda kind, nm: 1.01e8, sizes=(300,))
+    values = recomputed(older, newer)
+    assert values["check.n"] == 9 and values["check.ratio"].value == pytest.approx(1.01)
+
+
+def test_the_tables_of_the_materials_show_used_and_printed():
+    tables = composition_tables()
+    assert "| q-S | 20 (20) | 54 (54) | 0.17 (0.17) | 2650 (2650) |" in tables["table2"]
+    assert "| Mg/O | 0.228 | 0.23 |" in tables["table1"]
