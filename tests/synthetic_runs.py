@@ -191,3 +191,28 @@ def make_table(
 def marked(run):
     """A run and its marks."""
     return run, disruption(run)
+
+
+def with_all_marks(table):
+    """A table of `make_table` with the marks that it lacks, each a part of omega_mass_75 of its own."""
+    own = table["omega_mass_75"]
+    return table.assign(omega_first_loss=0.8 * own, omega_contacts_75=1.1 * own, omega_disr=1.2 * own)
+
+
+def make_fragments(grains=6, exponent=1.2, seed=0):
+    """Fragments of grains of three types and sizes, monomers drawn from a power law, together half of the mass."""
+    rng = np.random.default_rng(seed)
+    rows, number = [], 0
+    for kind in CONTACTS:
+        for a_eff, largest in ((50e-9, 20), (200e-9, 100), (500e-9, 1000)):
+            n = np.arange(1, largest + 1)
+            law = n**-exponent / np.sum(n**-exponent)
+            for _ in range(grains):
+                monomers = rng.choice(n, size=rng.integers(2, 9), p=law)
+                mass = 0.5 * monomers / monomers.sum()
+                rows += [
+                    {"type": kind, "a_eff": a_eff, "grain": number, "fragment_n_monomers": m, "mass_fraction": part}
+                    for m, part in zip(monomers, mass, strict=True)
+                ]
+                number += 1
+    return pd.DataFrame(rows).assign(weight=1.0, half=True, disruption=False)

@@ -10,7 +10,7 @@ from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure5 import figure5, nearest_snapshots
-from ratd.pictures.snapshots import LARGEST, fragment_colours
+from ratd.pictures.snapshots import LARGEST, displacements, fragment_colours
 from ratd.pictures.spheres import render, scale_length, view_axes
 from synthetic_runs import make_run, run_with_snapshots
 
@@ -62,9 +62,39 @@ def words(figure):
 def test_figure1_names_each_grain_and_its_numbers():
     grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S", type="BA", seed=3)
     text = words(figure1([grain]))
-    assert "BA" in text and r"$N_\mathrm{con}$ = 1" in text and "seed 3" in text and "40.0 nm" in text
+    assert "BA" in text and r"$N_\mathrm{con}$ = 1" in text and "seed 3" in text and "= 40 nm" in text
     with pytest.raises(InputError, match="no two of the same"):
         figure1([grain, grain])
+
+
+def test_figure1_has_one_scale_for_all_grains():
+    """Pairs of 20 nm and of 60 nm: the pictures of their spheres differ by a factor of 3, all in mm of the figure."""
+    small, large = (Grain([[0, 0, 0], [0, 0, 1.9975 * a]], [a, a], "q-S", type="BA", seed=3) for a in (20e-9, 60e-9))
+    figure = figure1([small, large])
+    (axes,) = figure.axes
+    widths = [image.get_extent()[1] - image.get_extent()[0] for image in axes.get_images()]
+    assert widths[1] / widths[0] == pytest.approx(3.0, rel=1e-9)
+    assert words(figure).count("for all grains") == 1 and words(figure).count("hat{a}_1") == 1
+
+
+def test_displacements_are_beyond_the_motion_as_a_rigid_body():
+    """A grain that turns and moves as a whole has none; one monomer that moves on its own has just its own."""
+    rng = np.random.default_rng(8)
+    start = rng.normal(0, 1e-7, (40, 3))
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    end = start @ turn.T + [1e-7, -2e-7, 3e-7]
+    end[0] += [3e-8, 0, 4e-8]
+    places, fragment = np.stack([start, end, end]), np.zeros((3, 40), int)
+    fragment[1:, 0] = 1  # the one that parts does not bias the fit of the others
+    fragment[2, 5] = -1
+    shape = ("snapshot", "monomer")
+    run = xr.Dataset({f"snapshot_{axis}": (shape, places[..., k]) for k, axis in enumerate("xyz")})
+    run = run.assign(snapshot_fragment=(shape, fragment), monomer_radius=("monomer", rng.uniform(1e-8, 3e-8, 40)))
+    none, own, dropped = displacements(run, (0, 1, 2))
+    np.testing.assert_allclose(none, 0.0, atol=1e-20)
+    np.testing.assert_allclose(own[1:], 0.0, atol=1e-20)
+    assert own[0] == pytest.approx(5e-8) and len(dropped) == 39
 
 
 def test_figure5_takes_the_nearest_snapshots_and_says_which():
@@ -72,6 +102,7 @@ def test_figure5_takes_the_nearest_snapshots_and_says_which():
     assert nearest_snapshots(run, 1.02e8) == [0, 2, 3]
     text = words(figure5(run, mark))
     assert "= 0.78" in text and "= 0.98" in text and "drive: prescribed" in text and "farther" not in text
+    assert "moved since" in text and text.count("in one piece") == 3 and "67 % in one piece" in text
 
 
 def test_figure5_without_what_it_needs():

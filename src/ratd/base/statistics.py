@@ -20,6 +20,7 @@ __all__ = [
     "slope_error",
     "slope_of",
     "weighted_line",
+    "weighted_parabola",
 ]
 
 N_BOOTSTRAP = 2000
@@ -301,6 +302,29 @@ def weighted_line(x, y, weights):
     # a replicate of a bootstrap may draw equal x only, which leaves rounding: no slope
     slope = np.sum(weights * (x - x_mean) * (y - y_mean), axis=-1) / np.where(spread > 1e-20, spread, np.nan)
     return slope, y_mean[..., 0] - slope * x_mean[..., 0]
+
+
+def weighted_parabola(x, y, weights):
+    """Parabolas by least squares.
+
+    Parameters
+    ----------
+    x, y, weights : array_like, shape (..., n)
+        A parabola along the last axis; the shapes broadcast.
+
+    Returns
+    -------
+    bend, slope, level : numpy.ndarray, shape (...)
+        Of y = level + slope x + bend x^2; NaN for a parabola of fewer than three different x.
+    """
+    # What x^2 adds to a straight line in x is what tells of the bend.
+    square = np.square(x)
+    slope_of_square, level_of_square = weighted_line(x, square, weights)
+    beyond = square - level_of_square[..., None] - slope_of_square[..., None] * x
+    spread = np.sum(weights * beyond**2, axis=-1)
+    bend = np.sum(weights * beyond * y, axis=-1) / np.where(spread > 1e-20, spread, np.nan)
+    slope, level = weighted_line(x, y - bend[..., None] * square, weights)
+    return bend, slope, level
 
 
 def binomial_interval(k, n, confidence=0.95):

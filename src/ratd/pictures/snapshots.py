@@ -81,6 +81,43 @@ def _frame(snapshot, radius):
     return Frame(position, radius[there], fragment, np.nan_to_num(snapshot["snapshot_normal_force"].values[there]))
 
 
+def displacements(run, chosen):
+    """How far monomers have moved since the first snapshot, beyond the motion of the largest fragment as a rigid body.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A spin-up run with snapshots, see `ratd.spin_up`.
+    chosen : iterable of int
+        Numbers of snapshots.
+
+    Returns
+    -------
+    list of (n,) numpy.ndarray
+        Of the monomers of each of the `frames` [m]. The rotation and translation taken off are those that bring the
+        monomers of the largest fragment nearest to where they are, in the mean square weighted by mass.
+    """
+    place = np.stack([run[f"snapshot_{axis}"].values for axis in "xyz"], axis=-1)
+    fragment, weight = run["snapshot_fragment"].values, run["monomer_radius"].values ** 3
+    found = []
+    for k in chosen:
+        there = fragment[k] >= 0
+        largest = fragment[k] == 0
+        turned = _carried(place[0], place[k], largest, weight)
+        found.append(np.linalg.norm(place[k] - turned, axis=1)[there])
+    return found
+
+
+def _carried(start, end, chosen, weight):
+    """Places (n, 3) that a rigid motion takes to the ends of the chosen ones as near as can be (Kabsch 1976)."""
+    weight = weight[chosen]
+    start_middle, end_middle = (np.average(at[chosen], axis=0, weights=weight) for at in (start, end))
+    moment = ((start[chosen] - start_middle) * weight[:, None]).T @ (end[chosen] - end_middle)
+    left, _, right = np.linalg.svd(moment)
+    sense = np.sign(np.linalg.det(left @ right))  # a mirror image is no motion
+    return (start - start_middle) @ (left * [1.0, 1.0, sense]) @ right + end_middle
+
+
 def fragment_colours(fragment):
     """Colours (n, 3) of monomers by the number of their fragment (n,): 0 the largest."""
     fragment = np.asarray(fragment)

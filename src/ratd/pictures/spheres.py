@@ -113,6 +113,13 @@ def show(axes, picture, half_width):
     axes.text(0.95 * edge - 0.5 * length, -0.93 * edge, f"{length:g} nm", ha="center", va="bottom", zorder=3)
 
 
+def outline(position, radius):
+    """Left, right, bottom, top of spheres of some radii (n,) at (n, 2) or (n, 3) in the coordinates of the picture."""
+    position, radius = np.asarray(position, dtype=float), np.asarray(radius, dtype=float)
+    x, y = position[:, 0], position[:, 1]
+    return np.array([np.min(x - radius), np.max(x + radius), np.min(y - radius), np.max(y + radius)])
+
+
 def scale_length(greatest):
     """Greatest of 1, 2, 5, 10, 20, ... that is not above a number."""
     power = 10.0 ** np.floor(np.log10(greatest))

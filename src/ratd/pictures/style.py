@@ -8,6 +8,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+import pandas as pd
 from matplotlib import font_manager
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator
@@ -190,7 +191,7 @@ def size_limits(a_eff):
     return np.min(a_eff) - margin, np.max(a_eff) + margin
 
 
-def logarithmic(axis, least=0.6):
+def logarithmic(axis, least=0.6, labelled=None):
     """Make the limits of a logarithmic axis fit for reading: a least width, and numbers that do not crowd.
 
     Parameters
@@ -199,6 +200,8 @@ def logarithmic(axis, least=0.6):
         With the data in place.
     least : float
         Least width in decades; a narrower axis is widened to both sides.
+    labelled : sequence of int, optional
+        Digits besides 1 that are labelled in each decade; default: the fewer the wider the axis is.
     """
     low, high = np.log10(axis.get_view_interval())
     extra = max(0.0, least - (high - low)) / 2
@@ -206,7 +209,8 @@ def logarithmic(axis, least=0.6):
     set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
     set_limits(10**low, 10**high)
     # Where fewer than two decades stand on the axis, 2 and 5 are labelled too, and on half a decade still more.
-    labelled = () if high - low >= 2 else (2, 5) if high - low > 0.55 else (2, 3, 4, 5, 7)
+    if labelled is None:
+        labelled = () if high - low >= 2 else (2, 5) if high - low > 0.55 else (2, 3, 4, 5, 7)
     axis.set_major_locator(LogLocator(subs=(1,)))
     axis.set_minor_locator(LogLocator(subs=range(2, 10)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: _power_text(value)))
@@ -248,6 +252,38 @@ def mean_and_range(axes, x, cells, name, style, label=None):
     axes.errorbar(x, mean, bars, ls="none", elinewidth=0.8, capsize=1.5, label=label, **style)
 
 
+def middle_and_most(axes, a_eff, values, style, label=None):
+    """Medians as markers and the middle two thirds as vertical bars, a marker a size.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        With sizes [nm] along x.
+    a_eff : pandas.Series
+        Where each grain stands [m].
+    values : pandas.Series
+        NaN are left out.
+    style : dict
+        Of the markers.
+    label : str, optional
+        Text in the legend.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns a_eff, low, middle, high, a row a size.
+    """
+    known = pd.DataFrame({"a_eff": a_eff, "value": values.astype(float)})
+    known = known[np.isfinite(known["value"])]
+    parts = known.groupby(np.rint(known["a_eff"] / 1e-12))["value"]
+    rows = [(size * 1e-12, *np.quantile(part, [1 / 6, 1 / 2, 5 / 6])) for size, part in parts]
+    found = pd.DataFrame(rows, columns=["a_eff", "low", "middle", "high"])
+    bars = bar_lengths(found["middle"], found["low"], found["high"])
+    look = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5} | style
+    axes.errorbar(nanometres(found["a_eff"]), found["middle"].to_numpy(), bars, label=label, **look)
+    return found
+
+
 def bar_lengths(middle, low, high):
     """Lengths of error bars, never below zero.
 
@@ -263,6 +299,51 @@ def bar_lengths(middle, low, high):
     middle = np.asarray(middle, dtype=float)
     # the mean of equal values may differ from them by rounding, and matplotlib refuses negative lengths
     return np.maximum([middle - low, high - middle], 0.0)
+
+
+def label_ends(axes, ends, apart=0.08, at=1.02, **look):
+    """Write names beside lines, right of a panel, moved up or down where they would stand on each other.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        With its limits in place.
+    ends : list of (str, float, str)
+        Text, height of the end of its line on the axis, and colour; a height that is no number is left out.
+    apart : float
+        Height of a line of text in heights of the panel.
+    at : float
+        Where the texts begin, in widths of the panel.
+    **look
+        Of the texts.
+    """
+    to_panel = axes.transData + axes.transAxes.inverted()
+    x = axes.get_xlim()[1]
+    ends = [(text, float(to_panel.transform((x, y))[1]), colour) for text, y, colour in ends if np.isfinite(y)]
+    ends.sort(key=lambda end: end[1])
+    sizes = [apart * (1 + text.count("\n")) for text, _, _ in ends]
+    for (text, _, colour), y in zip(ends, _moved_apart([end[1] for end in ends], sizes), strict=True):
+        axes.text(at, y, text, transform=axes.transAxes, color=colour, ha="left", va="center", **look)
+
+
+def _moved_apart(heights, sizes):
+    """Middles of things of some sizes at ascending heights, moved so that none overlap, by the least squares."""
+    groups = []  # of things that touch: where the first one has its middle, and the heights and sizes of all
+    for height, size in zip(heights, sizes, strict=True):
+        groups.append((height, [height], [size]))
+        while len(groups) > 1:
+            (first, low, below), (second, high, above) = groups[-2:]
+            if second - first >= _steps(below + above[:1])[-1] - 1e-12:
+                break
+            every, wide = low + high, below + above
+            groups[-2:] = [(float(np.mean(every - _steps(wide))), every, wide)]
+    return [first + step for first, _, wide in groups for step in _steps(wide)]
+
+
+def _steps(sizes):
+    """Middles of things that touch, over that of the first one."""
+    sizes = np.asarray(sizes, dtype=float)
+    return np.cumsum(sizes) - 0.5 * sizes - 0.5 * sizes[0]
 
 
 def empty(axes, text="no grains"):

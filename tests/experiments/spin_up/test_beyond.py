@@ -15,10 +15,10 @@ from ratd.experiments.spin_up.eq33 import (
     fitted_numbers,
     radius_of_reading,
 )
-from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, fragment_shares, power_law
+from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, fragment_shares, power_law
 from ratd.experiments.spin_up.oblateness import oblate_counts
-from ratd.experiments.spin_up.size_law import size_law, slopes
-from synthetic_runs import make_table
+from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, slopes
+from synthetic_runs import make_fragments, make_table
 
 SIZES = tuple(50e-9 * k for k in range(1, 9))
 
@@ -96,6 +96,56 @@ def test_errors_of_the_law_of_size_are_the_scatter_between_ensembles():
     for name in ("C", "p"):
         assert found[f"{name}_error"].mean() == pytest.approx(found[name].std(), rel=0.3)
     assert found["scatter"].mean() == pytest.approx(0.2, rel=0.05) and found["p"].mean() == pytest.approx(1.5, abs=0.02)
+
+
+def curved_table(bends, seeds=4):
+    """Grains with C = 0.5, 1.5, 3, p = 2, 1.5, 1.2 and such bends q of the types."""
+    table = make_table(sizes=SIZES, seeds=seeds)
+    x = np.log(table["a_eff"] / 300e-9)
+    constant, power, bend = (
+        table["type"].map(dict(zip(("BA", "BAM1", "BAM2"), values, strict=True)))
+        for values in ((0.5, 1.5, 3.0), (2.0, 1.5, 1.2), bends)
+    )
+    return table.assign(omega_mass_75=constant * size_law_unit(table) * np.exp(-power * x - bend * x**2))
+
+
+def test_a_curved_law_is_found_and_its_value_is_the_formula():
+    table = curved_table((-0.2, 0.0, 0.1))
+    law = curved_law(table).set_index("type")
+    for kind, C, p, q in (("BA", 0.5, 2.0, -0.2), ("BAM1", 1.5, 1.5, 0.0), ("BAM2", 3.0, 1.2, 0.1)):
+        own = law.loc[kind]
+        assert own[["C", "p", "q"]].tolist() == pytest.approx([C, p, q], abs=1e-9)
+        assert max(own[["C_error", "p_error", "q_error", "scatter"]]) < 1e-9 and own["n_grains"] == 3 * 4 * len(SIZES)
+        here = table[table["type"] == kind]
+        value = size_law_unit(here) * curved_law_value(here["a_eff"], C, p, q)
+        np.testing.assert_allclose(value, here["omega_mass_75"])
+        ratio = here["a_eff"].to_numpy() / SPLIT
+        np.testing.assert_allclose(value, C * size_law_unit(here) * ratio ** (-p - q * np.log(ratio)))
+    two = curved_law(table[table["a_eff"] < 110e-9])
+    assert not len(two) and len(size_law(table[table["a_eff"] < 110e-9], "omega_mass_75")) == 3
+
+
+def test_errors_of_the_curved_law_are_the_scatter_between_ensembles():
+    rng, table = np.random.default_rng(5), curved_table((0.1, 0.1, 0.1), seeds=3)
+    table = table[table["type"] == "BAM1"]
+    made = pd.concat(
+        curved_law(table.assign(omega_mass_75=table["omega_mass_75"] * rng.lognormal(0, 0.2, len(table))))
+        for _ in range(60)
+    )
+    for name, value in (("C", 1.5), ("p", 1.5), ("q", 0.1)):
+        assert made[f"{name}_error"].mean() == pytest.approx(made[name].std(), rel=0.3)
+        assert made[name].mean() == pytest.approx(value, abs=4 * made[name].std() / np.sqrt(60))
+    assert made["scatter"].mean() == pytest.approx(0.2, rel=0.05)
+    np.testing.assert_allclose(made["significance"], made["q"].abs() / made["q_error"])
+
+
+def test_the_curve_does_not_hang_on_how_many_grains_each_size_has():
+    """omega that is no parabola of size, seen with all grains and with fewer of the large ones."""
+    table = curved_table((0.0, 0.0, 0.0), seeds=5)
+    table["omega_mass_75"] *= np.exp(0.3 * np.log(table["a_eff"] / 300e-9) ** 3)
+    fewer = table[(table["seed"] == 0) | (table["a_eff"] < 220e-9)]
+    names = ["C", "p", "q"]
+    np.testing.assert_allclose(curved_law(fewer)[names], curved_law(table)[names], rtol=1e-9)
 
 
 @pytest.mark.parametrize("by", ["size", "fold"])
@@ -240,3 +290,44 @@ def test_power_law_is_not_justified_for_another_distribution():
     sizes = np.random.default_rng(6).poisson(20, size=500) + 1
     assert power_law(sizes, 500)["probability"] == 0.0
     assert np.isnan(power_law([1, 2, 3], 10)["exponent"])
+
+
+def test_the_exponent_is_that_of_greatest_likelihood():
+    """Against the condition itself, <ln n> of the law = <ln n> of the sample, solved by bisection."""
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        largest = int(rng.integers(20, 1500))
+        sizes = np.exp(rng.uniform(0, np.log(largest), rng.integers(10, 60))).astype(int)
+        n = np.arange(1, largest + 1)
+
+        def mean(exponent, n=n):
+            law = n**-exponent
+            return law @ np.log(n) / law.sum()
+
+        low, high, wanted = -5.0, 15.0, np.log(sizes).mean()
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if mean(middle) > wanted else (low, middle)
+        assert power_law(sizes, largest, replicates=1)["exponent"] == pytest.approx(low, abs=1e-9)
+
+
+def test_exponents_by_type_and_class_lie_in_their_intervals():
+    found = exponents(make_fragments(grains=60), replicates=100)
+    assert len(found) == 9 and (found["n_grains"] == 60).all()
+    assert (found["low"] < found["exponent"]).all() and (found["exponent"] < found["high"]).all()
+    inside = (found["low"] < 1.2) & (found["high"] > 1.2)
+    assert inside.sum() >= 7  # 95 % of 9 intervals
+    large = found[found["size_class"] == "400 to 550 nm"]
+    assert (large["high"] - large["low"] < 0.2).all() and large["exponent"].to_numpy() == pytest.approx(1.2, abs=0.1)
+    flatter = exponents(make_fragments(grains=60), largest=10**4, replicates=2)
+    assert (flatter["exponent"] > found["exponent"]).all()  # fewer large ones than there could be
+
+
+def test_large_pieces_are_counted_by_the_grain():
+    table = make_fragments(grains=2)
+    table["mass_fraction"] = np.where(table.groupby("grain").cumcount() < 2, 0.2, 0.01)
+    table.loc[table["grain"] == 0, "mass_fraction"] = 0.1  # is not above a tenth
+    found = exponents(table, replicates=2).set_index(["type", "size_class"])["large_pieces"]
+    assert found["BA", "50 to 150 nm"] == 1.0 and found["BAM2", "400 to 550 nm"] == 2.0
+    one = exponents(table[table["grain"] == 3], replicates=2).iloc[0]
+    assert np.isnan(one["low"]) and np.isnan(one["large_pieces_error"]) and one["large_pieces"] == 2

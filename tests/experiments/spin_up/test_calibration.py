@@ -135,9 +135,17 @@ def test_it_can_be_written_and_read_and_drawn(table, tmp_path):
     io.write(tmp_path / "a.nc", dataset, "calibration")
     back = io.read(tmp_path / "a.nc", "calibration")
     assert float(back["calibrated"]) == float(fit["calibrated"])
-    (axes,) = calibration(table, fit).axes
-    drawn = {line.get_label(): line for line in axes.get_lines()}
-    assert list(drawn["1 % of the mass lost"].get_ydata()) == list(table["omega_mass_99"])
+    figure = calibration(table, fit)
+    (axes,) = figure.axes
+    markers = {factor: marker for factor, marker in zip((0.02, 0.05), "so", strict=True)}
+    for factor, marker in markers.items():
+        (run,) = (line for line in axes.get_lines() if line.get_marker() == marker)
+        here = table[table["timestep_factor"] == factor]
+        assert list(run.get_ydata()) == list(here["omega_mass_99"])
+        bars = [bar for c in axes.containers if c[0] is run for bar in c[2][0].get_segments()]
+        ends = here[["omega_first_loss", "omega_mass_75"]].to_numpy()
+        np.testing.assert_allclose([bar[:, 1] for bar in bars], ends)
+    assert "3 runs of 1 grain at 2 rates" in figure.get_suptitle()
     diamond = next(line for line in axes.get_lines() if line.get_marker() == "D")
     assert diamond.get_xdata()[0] == float(fit["calibrated"]) and diamond.get_ydata()[0] == 2e9
     with pytest.raises(InputError, match="at least one run"):

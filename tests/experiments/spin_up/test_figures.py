@@ -15,7 +15,6 @@ import pytest
 from matplotlib import font_manager
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
@@ -24,23 +23,28 @@ from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.eq33 import eq33, fit_ensemble
 from ratd.experiments.spin_up.figures.figure2 import figure2
-from ratd.experiments.spin_up.figures.figure4 import figure4
+from ratd.experiments.spin_up.figures.figure4 import figure4, figure4_beside
 from ratd.experiments.spin_up.figures.figure6 import axis_ratios, figure6
 from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure10 import figure10
+from ratd.experiments.spin_up.figures.fragments import fragments
+from ratd.experiments.spin_up.figures.law import law
+from ratd.experiments.spin_up.figures.marks import marks
+from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.pairs import force_controlled_omega
 from ratd.experiments.spin_up.printed import TABLE_3
 from ratd.experiments.spin_up.tensile import predictions, tensile_strength_tatsuuma2019
 from ratd.pictures.style import (
-    GREY,
     ONE_COLUMN,
     TWO_COLUMNS,
     TYPE_COLOUR,
     TYPE_MARKER,
+    label_ends,
     logarithmic,
     mean_and_range,
+    middle_and_most,
     offsets,
     own_fonts_first,
     power_of_ten,
@@ -48,7 +52,7 @@ from ratd.pictures.style import (
     styled,
     type_style,
 )
-from synthetic_runs import make_run, make_table
+from synthetic_runs import make_fragments, make_run, make_table, with_all_marks
 
 SIZES = (50e-9, 75e-9, 100e-9)
 PANEL_SIZES = (200e-9, 350e-9, 500e-9)
@@ -84,10 +88,16 @@ def full_figures():
     return {
         "figure2": figure2(table),
         "figure4": figure4(cell_of_runs()),
+        "figure4 beside": figure4_beside({"one": cell_of_runs(), "other": cell_of_runs(2)}),
         "figure6": figure6(table),
         "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
-        "figure8": figure8(table),
+        "figure8": figure8(table, fit=fit_ensemble(table, n_bootstrap=5)),
         "figure10": figure10(made_up_pairs()),
+        "overview": overview(table),
+        "overview of both": overview(table, table, table.assign(firm_bound=table["cut_bound"])),
+        "law": law(table),
+        "marks": marks(with_all_marks(table)),
+        "fragments": fragments(make_fragments(), "prescribed"),
     }
 
 
@@ -252,10 +262,15 @@ def test_figure4_puts_the_dots_at_the_marks():
     for axes, name in ((mass, "omega_mass_75"), (contacts, "omega_contacts_75"), (stress, "omega_disr")):
         dots = [line.get_xdata()[0] for line in lines(axes, marker="o") if len(line.get_xdata())]
         np.testing.assert_allclose(dots, [float(mark[name]) for mark in marks])
-        assert len(lines(axes, marker="None")) == len(runs)
+        grains = lines(axes, marker="None", color=TYPE_COLOUR["BAM2"])
+        assert len(grains) == 2 * len(runs)  # up to half of the mass, and what is left
+        assert sum(line.get_alpha() == 1 for line in grains) == 1  # the grain of median omega_disr
+        # the paper's grains: where it has a constant mass
+        assert [line.get_xdata()[0] for line in lines(axes, color="black", linestyle="--")] == [3e8]
     heights = [line.get_ydata()[0] for line in lines(mass, marker="o")]
     np.testing.assert_allclose(heights, 0.75 * 4.76)
     assert "10^{-16}" in mass.get_ylabel() and "kg" in mass.get_ylabel()
+    assert "paper: mass" in words(mass.figure)
     np.testing.assert_allclose(lines(mass, marker="None")[0].get_ydata()[0], 4.76)
 
 
@@ -265,7 +280,25 @@ def test_figure4_points_at_the_greatest_gain_of_contacts():
     last = disruption(runs[-1])  # it gains most
     assert note.xy == (float(last["omega_contacts_max"]), float(last["n_contacts_max"]))
     assert "+10 %" in note.get_text()
-    assert "no grain gains contacts" in words(figure4([make_run(1e8, gain=0)]))
+    assert "no grain\ngains contacts" in words(figure4([make_run(1e8, gain=0)]))
+
+
+def test_figure4_beside_has_one_axis_of_each_kind():
+    groups = {"slow": cell_of_runs(3), "fast": [make_run(3e8, omega_1=2e8, end=9e8, seed=seed) for seed in range(2)]}
+    figure = figure4_beside(groups)
+    rows = np.reshape(figure.axes, (3, 2))
+    assert len({axes.get_xlim() for axes in rows.flat}) == 1
+    assert all(left.get_ylim() == right.get_ylim() for left, right in rows)
+    assert "slow, 3 grains" in words(figure) and "fast, 2 grains" in words(figure)
+    with pytest.raises(InputError, match="at least one group"):
+        figure4_beside({})
+
+
+def test_figures_of_other_grains_have_no_line_of_the_paper():
+    run = make_run(3e7, omega_1=5e7, a_eff=200e-9)
+    assert "paper: mass" not in words(figure4([run]))
+    low, high = figure4([run]).axes[0].get_xlim()
+    assert high == pytest.approx(1.1 * run["omega"].values.max()) and low < 3e7
 
 
 def test_figure4_without_marks_in_the_run():
@@ -291,22 +324,30 @@ def test_figure6_counts_oblate_grains():
         )
         known = here[here["axis_b_disr"].notna()]
         end = sum(row.axis_b_disr / row.axis_a_disr > row.axis_c_disr / row.axis_b_disr for row in known.itertuples())
-        assert f"{kind} oblate: {start}/5 \N{RIGHTWARDS ARROW} {end}/{4 if kind == 'BA' else 5}" in words(figure)
-    assert "350 nm, 15 grains" in words(figure) and "prolate" in words(figure)
+        (panel,) = [axes for axes in figure.axes if axes.get_title().startswith(f"{kind},")]
+        said = [text.get_text() for text in panel.texts]
+        assert f"oblate: {start}/5 \N{RIGHTWARDS ARROW} {end}/{4 if kind == 'BA' else 5}" in said
+        assert "350 nm, 5 grains" in panel.get_title() and "prolate" in said
 
 
-def test_figure6_shows_axis_ratios():
+def test_figure6_joins_the_axis_ratios_of_a_grain():
     table = make_table(seeds=2)
-    panel = figure6(table).axes[1]
+    figure = figure6(table)
+    assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
+    panel = figure.axes[4]
+    assert panel.get_title().startswith("BAM1, ") and "350 nm" in panel.get_title()
     here = table[(table["material"] == "a-C") & (table["a_eff"] == 350e-9) & (table["type"] == "BAM1")]
-    for when, marker in (("start", "s"), ("disr", "+")):
-        (line,) = lines(panel, marker=marker)
+    ratios = {when: axis_ratios(here, when) for when in ("start", "disr")}
+    for when, face in (("start", "white"), ("disr", TYPE_COLOUR["BAM1"])):
+        (line,) = lines(panel, marker="s", markerfacecolor=face)
         np.testing.assert_allclose(line.get_xdata(), here[f"axis_b_{when}"] / here[f"axis_a_{when}"])
         np.testing.assert_allclose(line.get_ydata(), here[f"axis_c_{when}"] / here[f"axis_b_{when}"])
-        np.testing.assert_array_equal(line.get_xydata().T, axis_ratios(here, when))
+        np.testing.assert_array_equal(line.get_xydata().T, ratios[when])
         (low, high), (left, right) = panel.get_ylim(), panel.get_xlim()
         assert (line.get_ydata() > low).all() and (line.get_ydata() < high).all()
         assert (line.get_xdata() > left).all() and (line.get_xdata() < right).all()
+    joined = [line.get_xydata() for line in lines(panel, marker="None", color=TYPE_COLOUR["BAM1"])]
+    np.testing.assert_allclose(joined, np.stack([ratios["start"].T, ratios["disr"].T], axis=1))
 
 
 def test_the_words_of_figure6_stand_where_no_grain_is(monkeypatch):
@@ -332,27 +373,43 @@ def test_the_words_of_figure6_stand_where_no_grain_is(monkeypatch):
     assert y > x and other_y < other_x  # c/b and b/a
 
 
-def test_figure7_draws_the_fit_the_bound_and_the_printed_table():
+def test_figure7_draws_the_fit_and_the_printed_table():
     table = make_table(seeds=3, scatter=0.0)
     fit = fit_ensemble(table, "own", n_bootstrap=5)
     figure = figure7(table, fit)
-    assert [axes.get_title() for axes in figure.axes] == ["a-C", "q-S", "co-S"]
+    assert [axes.get_title() for axes in figure.axes[:3]] == ["a-C", "q-S", "co-S"]
     panel, m = figure.axes[1], get_material("q-S")
     here = table[(table["material"] == "q-S") & (table["type"] == "BAM2")]
     groups = here.assign(x=np.log(here["n_contacts"] * here["filling_factor"])).groupby("a_eff")
     contacts = np.exp(groups["x"].mean())
     sizes = contacts.index.to_numpy()
-    blue = lines(panel, color=TYPE_COLOUR["BAM2"])
-    solid = [line for line in blue if line.get_linestyle() == "-"]
-    dashed = [line for line in blue if line.get_linestyle() == "--"]
-    assert [line.get_marker() for line in dashed] == ["^"]
+    solid, printed = (
+        line
+        for line in lines(panel, color=TYPE_COLOUR["BAM2"], marker="None")
+        if line.get_linestyle() != "None" and len(line.get_xdata()) == len(sizes)
+    )
     # Grains on the law: the fitted line is the geometric mean of their omega.
     expected = np.exp(here.assign(y=np.log(here["omega_disr"])).groupby("a_eff")["y"].mean())
-    np.testing.assert_allclose(solid[0].get_ydata(), expected, rtol=1e-9)
-    np.testing.assert_allclose(dashed[0].get_ydata(), groups["cut_bound"].mean())
-    printed = lines(panel, marker="^", color=GREY)
+    np.testing.assert_allclose(solid.get_ydata(), expected, rtol=1e-9)
     args = (sizes, m.surface_energy, m.density, 20e-9, contacts, 1.0)
-    np.testing.assert_allclose(printed[0].get_ydata(), eq33(*args, *TABLE_3["q-S", "BAM2"]))
+    np.testing.assert_allclose(printed.get_ydata(), eq33(*args, *TABLE_3["q-S", "BAM2"]))
+    assert (solid.get_linestyle(), printed.get_linestyle()) == ("-", "--")
+
+
+def test_figure7_has_the_ratio_to_the_printed_table_below():
+    table = make_table(seeds=5)
+    figure = figure7(table)
+    panel, m = figure.axes[4], get_material("q-S")
+    here = table[(table["material"] == "q-S") & (table["type"] == "BAM1")]
+    args = here["a_eff"], m.surface_energy, m.density, 20e-9, here["n_contacts"], here["filling_factor"]
+    ratio = (here["omega_disr"] / eq33(*args, *TABLE_3["q-S", "BAM1"])).groupby(here["a_eff"])
+    points, _, (bars,) = panel.containers[1]
+    np.testing.assert_allclose(points.get_ydata(), ratio.median())
+    ends = np.array([segment[:, 1] for segment in bars.get_segments()])
+    for k, part in enumerate((1 / 6, 5 / 6)):
+        np.testing.assert_allclose(ends[:, k], ratio.quantile(part))
+    other = figure7(table.assign(material="forsterite"))
+    assert "no grain that Table 3 has" in words(other)
 
 
 def test_figure7_takes_what_needs_no_spin_up_from_all_grown_grains():
@@ -360,11 +417,9 @@ def test_figure7_takes_what_needs_no_spin_up_from_all_grown_grains():
     table = grown[grown["seed"] < 2]
     panel = figure7(table, grown=grown).axes[1]
     here = grown[(grown["material"] == "q-S") & (grown["type"] == "BA")]
-    (dashed,) = lines(panel, color=TYPE_COLOUR["BA"], marker="o", linestyle="--")
-    np.testing.assert_allclose(dashed.get_ydata(), here.groupby("a_eff")["cut_bound"].mean())
     m = get_material("q-S")
     contacts = np.exp(np.log(here["n_contacts"] * here["filling_factor"]).groupby(here["a_eff"]).mean())
-    (printed,) = lines(panel, color=GREY, marker="o")
+    (printed,) = lines(panel, color=TYPE_COLOUR["BA"], linestyle="--")
     args = (contacts.index.to_numpy(), m.surface_energy, m.density, 20e-9, contacts, 1.0)
     np.testing.assert_allclose(printed.get_ydata(), eq33(*args, *TABLE_3["q-S", "BA"]))
     # the markers are those of the grains that were spun up
@@ -375,20 +430,13 @@ def test_figure7_takes_what_needs_no_spin_up_from_all_grown_grains():
     assert f"{len(table)} grown grains" in words(figure7(table))
 
 
-def test_the_legend_of_figure7_shows_the_marker_of_each_type_on_each_line():
-    (legend,) = figure7(make_table(sizes=SIZES, seeds=2)).legends
-    shown = [line for line in legend.findobj(Line2D) if line.get_marker() in TYPE_MARKER.values()]
-    filled = [line for line in shown if line.get_linestyle() == "None"]
-    printed = [line for line in shown if line.get_color() == GREY]
-    bound = [line for line in shown if line.get_linestyle() == "--"]
-    for one in (filled, printed, bound):
-        assert [line.get_marker() for line in one] == list(TYPE_MARKER.values())
-
-
 def test_figure7_goes_without_a_fit():
     table = make_table(sizes=SIZES, seeds=2)
-    n = [len(lines(figure7(table, fit).axes[0], linestyle="-")) for fit in (None, fit_ensemble(table, n_bootstrap=5))]
-    assert n == [3, 6]  # the printed ones, and the fitted ones
+    n = [
+        sum(line.get_linestyle() == "-" for line in lines(figure7(table, fit).axes[0], marker="None"))
+        for fit in (None, fit_ensemble(table, n_bootstrap=5))
+    ]
+    assert n == [0, 3]
 
 
 def test_figure8_scales_what_has_no_absolute_value():
@@ -409,6 +457,25 @@ def test_figure8_scales_what_has_no_absolute_value():
     panel = figure8(table).axes[0]
     (black,) = lines(panel, color="#000000")
     np.testing.assert_allclose(black.get_ydata(), curves["absolute"])
+    (band,) = panel.collections[:1]
+    low, high = curves[["S13 low", "T19", "S13 high"]].min(axis=1), curves[["S13 low", "T19", "S13 high"]].max(axis=1)
+    drawn = band.get_paths()[0].vertices
+    assert np.isclose(drawn[:, 1], low.iloc[-1]).any() and np.isclose(drawn[:, 1], high.iloc[-1]).any()
+
+
+def test_figure8_has_eq_33_as_fitted_and_as_printed():
+    table = make_table(("co-S",), ("BAM2",), seeds=4, scatter=0.0)
+    figure = figure8(table, fit=fit_ensemble(table, "own", n_bootstrap=5))
+    panel, m = figure.axes[0], get_material("co-S")
+    (fitted,) = lines(panel, color=TYPE_COLOUR["BAM2"], linestyle="-")
+    groups = table.assign(y=np.log(table["omega_disr"])).groupby("a_eff")
+    np.testing.assert_allclose(fitted.get_ydata(), np.exp(groups["y"].mean()), rtol=1e-9)
+    (printed,) = lines(panel, color=TYPE_COLOUR["BAM2"], linestyle="--")
+    args = table["a_eff"], m.surface_energy, m.density, 20e-9, table["n_contacts"], table["filling_factor"]
+    own = pd.Series(np.log(eq33(*args, *TABLE_3["co-S", "BAM2"]))).groupby(table["a_eff"]).mean()
+    np.testing.assert_allclose(printed.get_ydata(), np.exp(own))
+    assert {"Eq. 33 fitted", "Eq. 33 as printed"} <= {text.get_text() for text in panel.texts}
+    assert "Eq. 33 fitted" not in words(figure8(table)) and not figure.legends
 
 
 def test_figure8_says_where_it_scales_instead():
@@ -437,6 +504,52 @@ def test_figure8_draws_the_lines_of_the_grown_grains():
 def test_figure10_has_the_materials_in_the_order_of_the_other_figures():
     pairs = made_up_pairs(("q-S", "co-S", "a-C"), 3)
     assert [axes.get_title() for axes in figure10(pairs).axes[:3]] == ["a-C", "q-S", "co-S"]
+
+
+def test_the_lines_of_figure10_are_not_hidden():
+    pairs = made_up_pairs(("q-S",))
+    top, bottom = figure10(pairs).axes
+    for marker, start in (("o", "damped"), ("s", "undamped")):
+        (few,), (every,) = (lines(axes, marker=marker) for axes in (top, bottom))
+        here = pairs[pairs["start"] == start]
+        assert len(few.get_xdata()) == 9 and len(every.get_xdata()) == len(here) == 80
+        radius = here["monomer_radius"].to_numpy() * 1e9
+        place = [np.argmin(np.abs(radius - x)) for x in few.get_xdata()]
+        np.testing.assert_allclose(few.get_ydata(), here["parting_omega"].to_numpy()[place])
+        assert all(line.get_zorder() > few.get_zorder() for line in lines(top, marker="None"))
+
+
+def test_figure2_shows_fractal_dimensions_of_grains_with_monomers_enough():
+    table = make_table(seeds=3)
+    table.loc[table["n_monomers"] < 30, "fractal_dimension"] = 8.0
+    panel = figure2(table).axes[3]
+    assert panel.get_ylim()[1] < 4 and "30 monomers" in words(panel.figure)
+    drawn = np.concatenate([container[0].get_ydata() for container in panel.containers])
+    assert len(drawn) and drawn.max() < 3.5
+    few = figure2(make_table(sizes=(50e-9,), seeds=2))
+    assert "no grain of 30 monomers" in words(few)
+
+
+def test_names_at_the_ends_of_lines_stand_apart_and_in_order():
+    axes = Figure().subplots()
+    axes.set_ylim(0, 1)
+    label_ends(axes, [("a", 0.5, "k"), ("b", 0.505, "k"), ("c", 0.9, "k"), ("d", np.nan, "k"), ("e", 0.495, "k")], 0.1)
+    heights = {text.get_text(): text.get_position()[1] for text in axes.texts}
+    assert heights == {text: pytest.approx(y) for text, y in (("e", 0.4), ("a", 0.5), ("b", 0.6), ("c", 0.9))}
+
+
+def test_medians_and_two_thirds():
+    rng, axes = np.random.default_rng(2), Figure().subplots()
+    a_eff = pd.Series(np.repeat([50e-9, 100e-9], 200)) * (1 + 1e-9 * rng.uniform(-1, 1, 400))
+    values = pd.Series(rng.lognormal(0, 0.3, 400))
+    values[3] = np.nan
+    found = middle_and_most(axes, a_eff, values, type_style(["BA"])["BA"])
+    np.testing.assert_allclose(found["a_eff"], [50e-9, 100e-9], rtol=1e-3)
+    for row, part in zip(found.itertuples(), (values[:200].dropna(), values[200:]), strict=True):
+        assert row.middle == np.median(part) and (part < row.low).mean() == pytest.approx(1 / 6, abs=0.01)
+        assert (part > row.high).mean() == pytest.approx(1 / 6, abs=0.01)
+    nothing = middle_and_most(axes, a_eff, values * np.nan, {})
+    assert list(nothing) == ["a_eff", "low", "middle", "high"] and not len(nothing)
 
 
 @pytest.mark.parametrize(

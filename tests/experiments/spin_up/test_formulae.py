@@ -10,6 +10,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
+from ratd.experiments.spin_up.figures.formulae import MEDIAN
 from ratd.experiments.spin_up.figures.formulae import formulae as figure
 from ratd.experiments.spin_up.formulae import (
     FORMULA_COLUMNS,
@@ -100,13 +101,26 @@ def test_effects_of_one_size_are_told_apart_from_those_of_another(table):
     both["a_eff"] *= 1 + 1e-15 * np.arange(len(both))  # as from the sum of their monomers
     found = formula_effects(both, "omega_disr").set_index(["nm", "type"])["median"]
     assert found[100, "BA"] == pytest.approx(0.9) and found[200, "BA"] == found[200, "all"] == pytest.approx(1.2)
-    rows = [axes.get_title() for axes in figure(both).axes]
-    assert len(rows) == 4 and sum("100 nm" in row for row in rows) == sum("200 nm" in row for row in rows) == 2
+    drawn = figure(both)
+    (legend,) = drawn.legends
+    assert {"100 nm", "200 nm"} < {text.get_text() for text in legend.texts}
+    faces = {line.get_markerfacecolor(): line.get_xdata() for line in drawn.axes[0].get_lines() if marked(line, "o")}
+    np.testing.assert_allclose(faces.pop("white"), [0.9] * 3)
+    ((larger,),) = faces.values()
+    assert larger == pytest.approx(1.2)
 
 
-def test_the_figure_shows_every_type_and_all(table):
-    axes = figure(table).axes[0]
-    points = [line.get_xdata()[0] for line in axes.get_lines() if line.get_marker() in "os^D"]
-    np.testing.assert_allclose(sorted(points), [0.8, 0.85, 0.9])
+def marked(line, markers):
+    return line.get_marker() in markers and len(line.get_xdata()) > 0
+
+
+def test_the_figure_shows_every_grain_and_says_how_few_they_are(table):
+    drawn = figure(table)
+    axes = drawn.axes[0]
+    assert "6 q-S grains, 3 of each type and size" in drawn.get_suptitle()
+    points = np.concatenate([line.get_xdata() for line in axes.get_lines() if marked(line, "os^")])
+    np.testing.assert_allclose(sorted(points), [0.8] * 3 + [0.9] * 3)
+    medians = [line.get_xdata()[0] for line in axes.get_lines() if line.get_linewidth() == MEDIAN["lw"]]
+    np.testing.assert_allclose(sorted(medians), [0.8, 0.9])
     with pytest.raises(InputError, match="at least one run"):
         figure(table[table["formula"] == "consistent"])

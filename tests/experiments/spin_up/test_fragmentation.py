@@ -1,12 +1,26 @@
 """Fragments up to disruption and up to half of the mass."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.experiments.spin_up.fragmentation import COLUMNS, fragment_table, fragmentation, join
+from ratd.experiments.spin_up.fragmentation import (
+    COLUMNS,
+    SIZE_CLASSES,
+    fragment_table,
+    fragmentation,
+    join,
+    read_spun_up_fragments,
+    size_class,
+)
 from ratd.pipeline import io, kinds
+
+SPUN_UP = Path("docs/reproduction/data/spun_up/prescribed/q-S_BAM1.nc")
 
 
 def run_and_mark(mass, omega, omega_disr, seed=0):
@@ -64,3 +78,20 @@ def test_a_file_gives_back_what_was_written(tmp_path):
     assert set(COLUMNS) < set(kinds.kind_of("fragments").variables)
     for name in dataset.variables:
         np.testing.assert_array_equal(found[name].values, dataset[name].values)
+
+
+def test_fragments_of_the_queue_are_read(tmp_path):
+    shutil.copy(SPUN_UP, tmp_path)
+    table, file = read_spun_up_fragments(tmp_path), io.read(SPUN_UP, "spun_up")
+    assert len(table) == file.sizes["fragment"] and table["grain"].max() + 1 == file.sizes["row"]
+    np.testing.assert_allclose(table["fragment_mass"].sum(), file["fragment_mass"].values.sum())
+    gone = table[table["half"]].groupby("grain")["mass_fraction"].sum()
+    assert (gone <= 1).all() and (gone[table.groupby("grain")["mass_fraction"].sum() >= 0.5] >= 0.5).all()
+
+
+def test_classes_of_size_have_the_names_of_their_sizes():
+    nm = np.arange(50, 551, 50)
+    found = size_class(pd.Series(nm * 1e-9))
+    for name in SIZE_CLASSES:
+        first, last = (int(word) for word in name.removesuffix(" nm").split(" to "))
+        assert nm[found == name].tolist() == list(range(first, last + 1, 50))

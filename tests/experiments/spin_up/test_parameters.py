@@ -74,24 +74,28 @@ def test_the_table_can_be_written_and_read(table, tmp_path):
     assert (back[list(table)].to_numpy() == table.to_numpy()).all()
 
 
-def test_figure9_shows_a_line_a_value_and_the_effect_of_it(table):
-    larger = table.assign(a_eff=2 * table["a_eff"], omega_disr=table["omega_disr"] / 2)
-    above, right, below, _ = figure9(pd.concat([table, larger])).axes
-    assert len(above.get_lines()) == len(right.get_lines()) == 2
-    here = table[table["parameter"] == "xi_c"]
-    mean = here["omega_disr"].mean()
-    np.testing.assert_allclose(above.get_lines()[1].get_ydata(), [mean, mean / 2])
-    assert "0.2 nm (paper)" in [text.get_text() for text in above.get_legend().texts]
-    assert "paper's value" in below.get_ylabel()
-    drawn = np.concatenate([line.get_ydata() for line in below.get_lines()])
-    assert np.isclose(drawn, here["omega_disr_ratio"].median()).any()
+def test_figure9_shows_medians_with_their_errors_on_one_axis(table):
+    larger = table.assign(a_eff=2 * table["a_eff"], omega_disr_ratio=1.01 * table["omega_disr_ratio"])
+    every = pd.concat([table, larger])
+    figure = figure9(every)
+    rolling, viscous = figure.axes
+    assert rolling.get_ylim() == viscous.get_ylim() and "paper's value" in rolling.get_ylabel()
+    found = effect(every, "xi_c", "omega_disr")
+    points, _, (bars,) = rolling.containers[0]
+    np.testing.assert_allclose(points.get_ydata(), found["median"])
+    ends = np.array([segment[:, 1] for segment in bars.get_segments()])
+    np.testing.assert_allclose(ends.T, [found["median"] - found["error"], found["median"] + found["error"]])
+    assert (ends > rolling.get_ylim()[0]).all() and (ends < rolling.get_ylim()[1]).all()
+    assert "50, 100 nm" in figure.get_suptitle()
     with pytest.raises(InputError, match="at least one run"):
         figure9(table[:0])
 
 
-def test_figure9_of_one_size_has_no_axis_of_sizes(table):
+def test_figure9_names_the_paper_and_what_its_markers_mean(table):
     figure = figure9(table)
     assert [axes.get_xlabel().split()[0] for axes in figure.axes] == ["critical", "viscous"]
+    assert "paper: 0.2" in figure.axes[0].get_xlabel() and "paper: 5" in figure.axes[1].get_xlabel()
+    assert "paper, BAM2" in [text.get_text() for text in figure.axes[1].texts]
     assert "50 nm" in figure.get_suptitle() and not any(axes.get_legend() for axes in figure.axes)
     (legend,) = figure.legends
     assert {"BAM2", "25 % of the mass lost"} < {text.get_text() for text in legend.texts}

@@ -14,7 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.base.statistics import equal_weights
+from ratd.base.statistics import drawn_counts, equal_weights, mean_of
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
 from ratd.pipeline import io
 
@@ -40,6 +40,16 @@ STAGES = {
     "disruption": "up to omega_disr",
     "half": "while the first half of the mass leaves",
 }
+
+
+SIZE_CLASSES = {
+    "50 to 150 nm": (0.0, 175e-9),
+    "200 to 350 nm": (175e-9, 375e-9),
+    "400 to 550 nm": (375e-9, math.inf),
+}
+"""Name of a class of grains -> a_eff [m] from and below which; the names are those of the sizes of the paper."""
+LARGE = 0.1
+"""Part of the mass of a grain above which a fragment is a large piece."""
 
 
 def fragmentation(run, mark):
@@ -171,6 +181,12 @@ def read_spun_up_fragments(folder):
     return fragment_table(joined)
 
 
+def size_class(a_eff):
+    """Name of `SIZE_CLASSES` of each a_eff [m], pandas.Series, in the order of the classes."""
+    low = [start for start, _ in SIZE_CLASSES.values()]
+    return pd.cut(a_eff, [*low, math.inf], right=False, labels=list(SIZE_CLASSES))
+
+
 MONOMER_BINS = (1, 2, 4, 11, np.inf)
 """Edges of classes of fragments by number of monomers: 1, 2-3, 4-10, 11 and more."""
 
@@ -215,6 +231,56 @@ def fragment_shares(fragments, stage, seed=0):
         for k, label in enumerate(MONOMER_CLASSES):
             own = {name: float(values[k]) for name, values in shares.items()}
             rows.append({"type": kind, "class": label, **own, "n_fragments": len(part), "n_grains": int(n)})
+    return pd.DataFrame(rows)
+
+
+def exponents(fragments, stage="half", largest=None, confidence=0.95, replicates=400, seed=0):
+    """Exponents of the sizes of fragments by type and class of size, and the number of large pieces.
+
+    Parameters
+    ----------
+    fragments : pandas.DataFrame
+        From `fragmentation.fragment_table`.
+    stage : str
+        One of `fragmentation.STAGES`.
+    largest : int, optional
+        Greatest possible number of monomers of a fragment; default: of each type and class that of its largest one. The
+        exponent hangs on it where it is near 1 or below.
+    confidence : float
+        Probability inside the intervals.
+    replicates : int
+        Of the bootstrap over grains.
+    seed : int
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type and class: type, size_class; exponent s of p(n) ~ n^-s over the monomers n of a fragment, from 1 to
+        `largest`, by greatest likelihood (`power_law`), with low and high, percentiles of a bootstrap over grains,
+        because the fragments of one grain are not independent; probability, low where no power law is justified;
+        large_pieces, the mean number of fragments of a grain above `LARGE` of its mass, with `_error`;
+        n_fragments, n_grains (that lost any). Fragments of radii a with a^-3.5 have s = 11/6.
+    """
+    rng = np.random.Generator(np.random.PCG64(seed))
+    chosen = fragments[fragments[stage]]
+    ends = [(1 - confidence) / 2, (1 + confidence) / 2]
+    rows = []
+    for (kind, name), part in chosen.groupby(["type", size_class(chosen["a_eff"])], observed=True, sort=False):
+        sizes, grain = part["fragment_n_monomers"].to_numpy(int), pd.factorize(part["grain"])[0]
+        n = np.arange(1, max(largest or 0, sizes.max()) + 1)
+        fit = power_law(sizes, len(n), seed)
+        drawn = [
+            np.bincount(sizes, weights=often[grain], minlength=len(n) + 1)[1:]
+            for often in drawn_counts(rng, replicates, grain.max() + 1)
+        ]
+        made = [_fit_power_law(counts, n)[0] for counts in drawn if np.count_nonzero(counts) > 1]
+        known = np.isfinite(fit["exponent"]) and grain.max() > 0
+        low, high = np.quantile(made, ends) if known else (np.nan, np.nan)
+        large = part.assign(large=part["mass_fraction"] > LARGE).groupby("grain")["large"].sum()
+        pieces, error = mean_of(large)
+        own = {"exponent": fit["exponent"], "low": low, "high": high, "probability": fit["probability"]}
+        own |= {"large_pieces": pieces, "large_pieces_error": error}
+        rows.append({"type": kind, "size_class": name, **own, "n_fragments": len(part), "n_grains": len(large)})
     return pd.DataFrame(rows)
 
 
@@ -275,5 +341,6 @@ def _fit_power_law(counts, n):
         mean = law @ log_n
         low, high = (exponent, high) if mean > wanted else (low, exponent)
         step = (mean - wanted) / (law @ (log_n - mean) ** 2)
-        exponent = exponent + step if low < exponent + step < high else 0.5 * (low + high)
+        # an end of the bracket is allowed: that is where the last step of all, of 0, leads
+        exponent = exponent + step if low <= exponent + step <= high else 0.5 * (low + high)
     return exponent, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), law

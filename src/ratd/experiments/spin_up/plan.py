@@ -136,7 +136,7 @@ class Plan(Settings):
         dict of str to (str or list of str)
             Name of the input -> files.
         """
-        table = f"<results>/ensemble/{drive}/grains.nc"
+        table, fit = (f"<results>/ensemble/{drive}/{name}.nc" for name in ("grains", "table3"))
         # What needs no spin-up is said of all grown grains, where no grain is grown for that alone.
         grown = ["<results>/ensemble/grown.nc"] if self.grows_more_anyway else []
         return {
@@ -145,8 +145,8 @@ class Plan(Settings):
             "figure4": lambda: {"runs": self.figure4_files(RUNS, drive)},
             "figure5": lambda: {"runs": self.figure5_files(RUNS, drive)},
             "figure6": lambda: {"table": table},
-            "figure7": lambda: {"table": table, "fit": f"<results>/ensemble/{drive}/table3.nc", "grown": grown},
-            "figure8": lambda: {"table": table, "grown": grown},
+            "figure7": lambda: {"table": table, "fit": fit, "grown": grown},
+            "figure8": lambda: {"table": table, "fit": fit, "grown": grown},
             "figure9": lambda: {"table": f"<results>/parameters/{drive}.nc"},
             "figure10": lambda: {"pairs": [f"<results>/pairs/{name}.nc" for name in self.config["materials"]]},
             "calibration": lambda: {"fit": "<results>/calibration/fit.nc"},

@@ -6,6 +6,7 @@ Values are as printed, in SI units unless their digits matter, in which case the
 import math
 
 __all__ = [
+    "FIRST_LOSS",
     "OBSERVED",
     "PAIR_ERROR",
     "PAPER",
@@ -59,6 +60,9 @@ PAPER_MEAN_RADIUS = 20e-9
 
 PAIR_ERROR = 0.018
 """Greatest error of the angular velocity at which two monomers part, against Eq. 35 (Appendix A, Fig. 10)."""
+
+FIRST_LOSS = (("q-S", "BAM2", 350e-9), 3e8)
+"""Material, type, a_eff [m] of the grains of Fig. 4, and omega [rad s-1] up to which their mass stays (Sect. 7.1)."""
 
 VISCOUS_EFFECT = (9e-12, 1.11)
 """T_vis [s], and omega_disr with it over that at 5 ps, of a-C BAM2 (Sect. 7.5)."""

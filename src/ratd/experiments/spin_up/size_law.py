@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.materials import get_material
-from ratd.base.statistics import drawn_counts, equal_weights, slope_error, slope_of, weighted_line
+from ratd.base.statistics import drawn_counts, equal_weights, slope_error, slope_of, weighted_line, weighted_parabola
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of, size_key
 
-__all__ = ["SPLIT", "size_law", "size_law_unit", "slopes"]
+__all__ = ["SPLIT", "curved_law", "curved_law_value", "size_law", "size_law_unit", "slopes"]
 
 SPLIT = 300e-9
 """Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
@@ -71,6 +71,72 @@ def size_law(table, mark="omega_disr", materials=None, seed=0):
             }
         )
     return pd.DataFrame(rows)
+
+
+def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
+    """omega of each type as a curve over size, for whoever has no grain at hand.
+
+    omega = C sqrt(gamma/(rho a^3)) (a_eff/a)^(-p - q ln(a_eff/a)) with a = `SPLIT`, by least squares of ln omega; all
+    cells count alike. It is `size_law` with a power that changes by 2 q where the size changes by a factor e, and is
+    meant for the sizes of the table, not beyond.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+    mark : str
+        omega [rad s-1].
+    materials : optional
+        Table of materials, handed to `ratd.base.materials.get_material`.
+    seed : int
+        Of the bootstrap over grains.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a type of at least three sizes: C, p, q with `_error`; scatter, the root mean square of the residuals of
+        ln omega; n_grains; significance, |q| over its error: above 3 a straight power law does not hold.
+    """
+    table = table[table[mark].astype(float) > 0]
+    rng = np.random.Generator(np.random.PCG64(seed))
+    rows = []
+    for kind, part in table.groupby("type", sort=False):
+        if size_key(part["a_eff"]).nunique() < 3:
+            continue
+        x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
+        y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
+        weights = equal_weights(cell_of(part))
+        bend, slope, level = weighted_parabola(x, y, weights)
+        bends, drawn_slopes, levels = weighted_parabola(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
+        # a replicate may have drawn too few sizes for a curve
+        errors = [float(np.nanstd(values, ddof=1)) for values in (np.exp(levels), drawn_slopes, bends)]
+        row = {"type": kind}
+        for name, value, error in zip("Cpq", (np.exp(level), -slope, -bend), errors, strict=True):
+            row |= {name: float(value), f"{name}_error": error}
+        residual = y - level - slope * x - bend * x**2
+        row["scatter"] = float(np.sqrt(np.average(residual**2, weights=weights)))
+        row["n_grains"] = len(part)
+        row["significance"] = abs(row["q"]) / row["q_error"] if row["q_error"] > 0 else np.inf
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def curved_law_value(a_eff, C, p, q=0.0):
+    """omega in units of sqrt(gamma/(rho a^3)), C (a_eff/a)^(-p - q ln(a_eff/a)) with a = `SPLIT`.
+
+    Parameters
+    ----------
+    a_eff : array_like
+        Effective radius [m].
+    C, p, q : float
+        From `curved_law`; with q = 0 that of `size_law`.
+
+    Returns
+    -------
+    numpy.ndarray or float
+    """
+    x = np.log(np.asarray(a_eff, dtype=float) / SPLIT)
+    return C * np.exp(-p * x - q * x**2)
 
 
 def slopes(table, mark="omega_disr", split=SPLIT):

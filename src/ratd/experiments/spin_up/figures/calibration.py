@@ -1,25 +1,24 @@
 """Where the literal drive starts to take a grain apart, against d omega/dt."""
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
 from ratd.base.words import plural
-from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES, MARKS, ONSET, PRINTED_STEP, same_rate
-from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, nanometres, new_figure, styled
+from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES, ONSET, PRINTED_STEP, same_rate
+from ratd.pictures.style import GREY, ONE_COLUMN, bar_lengths, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
 
-LOOK = {
-    "omega_first_loss": {"color": "#0072B2", "marker": "o", "mfc": "none", "ms": 7},
-    "omega_mass_99": {"color": "#D55E00", "marker": "s", "ms": 3.5},
-    "omega_mass_75": {"color": "#009E73", "marker": "^", "mfc": "none", "ms": 4.5},
-}
-SPREAD = 1.014
+RUN, FIT = "#0072B2", "#D55E00"
+STEP_MARKERS = "so^Dv"
+"""Of the step factors, the shortest first."""
+SPREAD = 1.02
 """Factor between the places of runs with the same d omega/dt."""
 
 
 @styled
 def calibration(table, fit):
-    """Marks of mass loss against d omega/dt, the fit of the onset, and the d omega/dt that gives the wanted onset.
+    """Onset of mass loss against d omega/dt, its fit, and the d omega/dt that gives the wanted onset.
 
     Parameters
     ----------
@@ -31,8 +30,9 @@ def calibration(table, fit):
     Returns
     -------
     matplotlib.figure.Figure
-        The marks of runs with the same d omega/dt stand side by side about a line at it, in the order of grains and
-        steps.
+        A marker a run where 1 % of the mass is lost, of a form a step factor, with a bar from the first loss of mass to
+        the loss of 25 %; thin lines join the runs of a grain. Runs with the same d omega/dt stand side by side about a
+        line at it, in the order of grains and steps.
 
     Raises
     ------
@@ -43,37 +43,49 @@ def calibration(table, fit):
         raise InputError("calibration: give at least one run")
     first = table.iloc[0]
     runs = f"{plural(len(table), 'run')} of {plural(table['seed'].nunique(), 'grain')}"
-    steps = ", ".join(f"{f:g}" for f in sorted(table["timestep_factor"].unique()))
     cell = f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm"
-    figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{cell}, {runs}\ndrive: literal, f = {steps}")
+    rates = plural(same_rate(table["printed_acceleration"]).nunique(), "rate")
+    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, f"{cell}, {runs} at {rates}\ndrive: literal")
     axes = figure.subplots()
     for rate in same_rate(table["printed_acceleration"]).unique():
-        axes.axvline(rate, color="0.85", lw=0.8, zorder=0)
-    places = _side_by_side(table)
-    for name, meaning in MARKS.items():
-        there = table[name].notna()
-        axes.plot(places[there], table.loc[there, name], ls="none", label=meaning, **LOOK[name])
+        axes.axvline(rate, color="0.88", lw=0.8, zorder=0)
+    handles = _runs(axes, table.assign(place=_side_by_side(table)))
     onset, exponent, calibrated = (float(fit[name]) for name in ("omega_onset", "exponent", "calibrated"))
-    axes.axhline(onset, color=GREY, lw=0.8, ls="--", label="onset in Fig. 4 of the paper")
+    handles.append(axes.axhline(onset, color=GREY, lw=0.8, ls="--", label="paper, Fig. 4"))
     if np.isfinite(calibrated):
         rates = table["printed_acceleration"]
         # Straight in these axes. More points would be thinned out by their last bits, which differ between processors.
         x = np.array([min(calibrated, rates.min()), max(calibrated, rates.max())])
-        axes.plot(x, onset * (x / calibrated) ** exponent, color=LOOK[ONSET]["color"], lw=0.8,
-                  label=rf"fit, $(\mathrm{{d}}\omega/\mathrm{{d}}t)^{{{exponent:.2f}}}$")  # fmt: skip
+        text = rf"fit, $(\mathrm{{d}}\omega/\mathrm{{d}}t)^{{{exponent:.2f}}}$"
+        handles += axes.plot(x, onset * (x / calibrated) ** exponent, color=FIT, lw=1.0, label=text)
         low, high = float(fit["calibrated_low"]), float(fit["calibrated_high"])
         error = [[calibrated - low], [high - calibrated]] if np.isfinite([low, high]).all() else None
-        axes.errorbar(calibrated, onset, xerr=error, color="black", marker="D", ms=4, lw=0.8, capsize=2, ls="none",
-                      zorder=3, label=f"calibrated: {_power(calibrated)}")  # fmt: skip
+        look = {"color": "black", "marker": "D", "ms": 4, "elinewidth": 0.8, "capsize": 2, "ls": "none", "zorder": 4}
+        handles.append(axes.errorbar(calibrated, onset, xerr=error, label=f"calibrated: {_power(calibrated)}", **look))
     axes.set_xscale("log")
     axes.set_yscale("log")
     logarithmic(axes.xaxis, least=0.3)
-    logarithmic(axes.yaxis, least=0.4)
-    scaled = "" if set(table["timestep_factor"]) == {PRINTED_STEP} else rf" \times\ {PRINTED_STEP:g}/f"
-    axes.set_xlabel(rf"$\mathrm{{d}}\omega/\mathrm{{d}}t{scaled}$ [rad s$^{{-2}}$]")
-    axes.set_ylabel(r"$\omega$ [rad s$^{-1}$]")
-    figure.legend(loc="outside lower center", ncols=2)
+    logarithmic(axes.yaxis, least=0.2)
+    axes.set_xlabel(rf"$\mathrm{{d}}\omega/\mathrm{{d}}t$ at the printed step, $f$ = {PRINTED_STEP:g} [rad s$^{{-2}}$]")
+    axes.set_ylabel(r"$\omega$ of 1 % mass loss [rad s$^{-1}$]")
+    figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
+
+
+def _runs(axes, table):
+    """Draw the runs; returns entries of the legend."""
+    for _, grain in table.groupby("seed"):
+        grain = grain[grain[ONSET].notna()].sort_values("printed_acceleration")
+        axes.plot(grain["place"], grain[ONSET], color=RUN, lw=0.5, zorder=1)
+    look = {"color": RUN, "ls": "none", "elinewidth": 0.8, "capsize": 2, "ms": 3.5, "zorder": 3}
+    handles = []
+    for factor, marker in zip(sorted(table["timestep_factor"].unique()), STEP_MARKERS, strict=False):
+        here = table[(table["timestep_factor"] == factor) & table[ONSET].notna()]
+        ends = (here[name].fillna(here[ONSET]) for name in ("omega_first_loss", "omega_mass_75"))
+        axes.errorbar(here["place"], here[ONSET], bar_lengths(here[ONSET], *ends), marker=marker, **look)
+        handles.append(Line2D([], [], color=RUN, ls="none", marker=marker, ms=3.5, label=f"run with $f$ = {factor:g}"))
+    handles.append(Line2D([], [], color=RUN, ls="none", marker="|", ms=9, label="first loss to 25 % lost"))
+    return handles
 
 
 def _side_by_side(table):

@@ -17,6 +17,13 @@ LOOK = {
 }
 REFERENCE = {"damped": "force_controlled_omega", "undamped": "eq35_omega"}
 """Start -> the column of its reference."""
+LINES = {
+    "force_controlled_omega": (r"slow load, $\sqrt{3\pi\gamma/2m}$", {"color": "black", "lw": 0.9}),
+    "eq35_omega": (r"Eq. 35, $\sqrt{5\pi\gamma/6m}$", {"color": "black", "lw": 0.9, "ls": (0, (4, 2))}),
+}
+"""Column of a reference -> its name and line."""
+SHOWN = 9
+"""Pairs of each start whose omega is shown: more would hide the lines."""
 
 
 def relative_error(table):
@@ -39,7 +46,7 @@ def figure10(table):
     Returns
     -------
     matplotlib.figure.Figure
-        The materials stand in the paper's order.
+        The materials stand in the paper's order. Above, `SHOWN` pairs of each start, spread over the radii; below all.
 
     Raises
     ------
@@ -68,12 +75,13 @@ def figure10(table):
         here = table[table["material"] == name].sort_values("monomer_radius")
         radius = nanometres(here["monomer_radius"])
         top.set_title(name)
-        top.plot(radius, here["force_controlled_omega"], color="black", lw=0.8)
-        top.plot(radius, here["eq35_omega"], color=GREY, lw=0.8, ls="--")
+        for column, (_, line) in LINES.items():
+            top.plot(radius, here[column], zorder=3, **line)
         for start, look in LOOK.items():
             part = here[here["start"] == start]
+            few = _spread(part["monomer_radius"].to_numpy())
             x = nanometres(part["monomer_radius"])
-            top.plot(x, part["parting_omega"], ls="none", mew=0.6, **look)
+            top.plot(x[few], part["parting_omega"].to_numpy()[few], ls="none", mew=0.6, zorder=2, **look | {"ms": 4.5})
             bottom.plot(x, part["error"], ls="none", mew=0.6, **look)
         lost = int(here["parting_omega"].isna().sum())
         if lost:
@@ -86,15 +94,21 @@ def figure10(table):
     logarithmic(panels[0, 0].yaxis)
     limit = 1.15 * max(100 * PAIR_ERROR, np.nanmax(np.abs(table["error"]), initial=0.0))
     panels[1, 0].set_ylim(-limit, limit)
+    line = panels[1, 0].get_yaxis_transform()
+    text = f"paper: {100 * PAIR_ERROR:g} %"
+    panels[1, 0].text(0.98, 96 * PAIR_ERROR, text, transform=line, ha="right", va="top", color=GREY)
     panels[0, 0].set_ylabel(r"$\omega$ of parting [rad s$^{-1}$]")
-    panels[1, 0].set_ylabel("error [%]")
+    panels[1, 0].set_ylabel("below its line [%]")
     handles = [Line2D([], [], ls="none", label=f"{start} pairs", mew=0.6, **look) for start, look in LOOK.items()]
-    handles += [
-        Line2D([], [], color="black", lw=0.8, label=r"slow load, $\sqrt{3\pi\gamma/2m}$"),
-        Line2D([], [], color=GREY, lw=0.8, ls="--", label=r"Eq. 35, $\sqrt{5\pi\gamma/6m}$"),
-    ]
+    handles += [Line2D([], [], label=text, **line) for text, line in LINES.values()]
     figure.legend(handles=handles, loc="outside lower center", ncols=4 if wide else 2)
     return figure
+
+
+def _spread(radius):
+    """Numbers of at most `SHOWN` of some radii, ascending ones, evenly spread over them."""
+    wanted = np.linspace(radius[0], radius[-1], SHOWN) if len(radius) else []
+    return np.unique([np.argmin(np.abs(radius - value)) for value in wanted]).astype(int)
 
 
 def draw(files, settings):

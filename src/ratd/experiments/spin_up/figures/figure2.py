@@ -1,9 +1,12 @@
 """Fig. 2: what the grown grains are like."""
 
+import numpy as np
+
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import (
+    GREY,
     TWO_COLUMNS,
     drive_of,
     drive_text,
@@ -25,6 +28,8 @@ PANELS = (
     ("porosity", r"porosity $\mathcal{P}$", "linear"),
     ("fractal_dimension", r"fractal dimension $D_\mathrm{f}$", "linear"),
 )
+ENOUGH = 30
+"""Monomers from which on a fractal dimension is shown: with fewer its fit scatters up to 8, and no body has above 3."""
 
 
 @styled
@@ -41,7 +46,8 @@ def figure2(table, drive=None):
     Returns
     -------
     matplotlib.figure.Figure
-        Means over seeds and materials as markers, minima to maxima as bars; the types are shifted a little.
+        Means over seeds and materials as markers, minima to maxima as bars; the types are shifted a little. Fractal
+        dimensions are those of grains of `ENOUGH` monomers or more.
 
     References
     ----------
@@ -52,7 +58,8 @@ def figure2(table, drive=None):
     known = f" ({drive_text(drive)})" if drive else ""
     figure = new_figure(TWO_COLUMNS, 0.68 * TWO_COLUMNS, f"{grains} of {materials} as grown, at rest{known}")
     panels = figure.subplots(2, 2, sharex=True)
-    cells = cell_statistics(table, by=("type", "a_eff"))
+    fitted = table["fractal_dimension"].where(table["n_monomers"] >= ENOUGH)
+    cells = cell_statistics(table.assign(fractal_dimension=fitted), by=("type", "a_eff"))
     style = type_style(cells["type"])
     shifts = dict(zip(style, offsets(cells["a_eff"], len(style)), strict=True)) if len(cells) else {}
     for axes, (name, label, scale) in zip(panels.flat, PANELS, strict=True):
@@ -62,12 +69,20 @@ def figure2(table, drive=None):
             here = cells[cells["type"] == kind]
             mean_and_range(axes, nanometres(here["a_eff"] + shifts[kind]), here, name, look, label=kind)
         if not cells[f"{name}_count"].any():
-            empty(axes, "no values")
+            empty(axes, f"no grain of {ENOUGH} monomers" if name == "fractal_dimension" else "no values")
         if scale == "log":
             logarithmic(axes.yaxis)
     if len(cells):
         panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
         panels[0, 0].legend(loc="upper left")
+    dimension = panels[1, 1]
+    if cells["fractal_dimension_count"].any():
+        dimension.axhline(3.0, color=GREY, lw=0.8, ls="--", zorder=0)
+        dimension.set_ylim(1.0, max(3.6, 1.03 * np.nanmax(cells["fractal_dimension_maximum"])))
+        text = f"grains of {ENOUGH} monomers or more"
+        dimension.text(0.97, 0.03, text, transform=dimension.transAxes, ha="right", va="bottom")
+        line = dimension.get_yaxis_transform()
+        dimension.text(0.97, 3.02, "a solid body", transform=line, ha="right", va="bottom", color=GREY)
     for axes in panels[1]:
         axes.set_xlabel(sizes_label())
     return figure

@@ -1,28 +1,36 @@
 """Fig. 5: one grain coming apart, in three pictures."""
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.ticker import FuncFormatter
 
+from ratd.base.units import NM
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run_files import run_of_seed
 from ratd.pictures.snapshots import (
+    CROWDED,
     FARTHEST,
     FORCES,
+    displacements,
     force_colours,
     force_scale,
-    fragment_colours,
     frames,
     need_snapshots,
     title_of,
 )
-from ratd.pictures.spheres import render, show, view_axes
-from ratd.pictures.style import ONE_COLUMN, empty, new_figure, styled
+from ratd.pictures.spheres import outline, render, scale_length, view_axes
+from ratd.pictures.style import TWO_COLUMNS, empty, nanometres, new_figure, styled
 
 MOMENTS = (0.1, 0.8, 1.0)
 """omega/omega_disr of the three pictures."""
 CAMERA = view_axes((0, 0, 1), (0, 1, 0))
 """The pictures are seen along the axis of rotation."""
+MOVED = colormaps["YlGnBu"]
+LEAST = 0.1 * NM
+"""Displacement [m] at the lower end of the scale, about the depth to which two monomers in contact overlap."""
+PIXELS = 720
 
 
 def nearest_snapshots(run, omega_disr):
@@ -33,7 +41,7 @@ def nearest_snapshots(run, omega_disr):
 
 @styled
 def figure5(run, mark=None, drive=None):
-    """Snapshots of a spin-up, coloured by fragment and by normal force (Fig. 5).
+    """Snapshots of a spin-up, coloured by how far each monomer has moved and by the force on it (Fig. 5).
 
     Parameters
     ----------
@@ -47,8 +55,10 @@ def figure5(run, mark=None, drive=None):
     Returns
     -------
     matplotlib.figure.Figure
-        Seen along the axis of rotation. A row a snapshot, that nearest to each of `MOMENTS`; the rows tell at which
-        omega/omega_disr it really is. A run without omega_disr gives an empty panel that says so.
+        Seen along the axis of rotation, all on one scale. A column a snapshot, that nearest to each of `MOMENTS`; the
+        columns tell at which omega/omega_disr it really is, and how much has parted. Above, the displacement since the
+        first snapshot of the run, beyond the motion as a rigid body (`displacements`); below, the normal force. A run
+        without omega_disr gives an empty panel that says so.
 
     Raises
     ------
@@ -57,38 +67,92 @@ def figure5(run, mark=None, drive=None):
 
     References
     ----------
-    Reissl et al. (2024), A&A 692, A60, Fig. 5.
+    Reissl et al. (2024), A&A 692, A60, Fig. 5, where the fragments have the colours of the displacement here.
     """
     mark = disruption(run) if mark is None else mark
     omega_disr = float(mark["omega_disr"])
     need_snapshots(run, "figure5")
-    figure = new_figure(ONE_COLUMN, 1.85 * ONE_COLUMN, title_of(run, drive))
+    title = title_of(run, drive).replace("\n", ", ")
     if not np.isfinite(omega_disr):
+        figure = new_figure(TWO_COLUMNS, 0.3 * TWO_COLUMNS, title)
         empty(figure.subplots(), "the run has no peak of the stress")
         return figure
     chosen = nearest_snapshots(run, omega_disr)
-    shown = frames(run, chosen)
+    shown, moved = frames(run, chosen), displacements(run, chosen)
     places = [frame.position @ CAMERA.T for frame in shown]
-    reach = [np.max(np.linalg.norm(at[:, :2], axis=1) + f.radius) for at, f in zip(places, shown, strict=True)]
-    half_width = 1.12 * min(max(reach), FARTHEST * reach[0])
-    scale = force_scale(shown)
-    panels = figure.subplots(len(chosen), 2, squeeze=False)
-    for row, k, at, frame in zip(panels, chosen, places, shown, strict=True):
-        colours = fragment_colours(frame.fragment), force_colours(frame.force, scale)
-        for axes, colour in zip(row, colours, strict=True):
-            show(axes, render(at, frame.radius, colour, half_width), half_width)
-        ratio = float(run["snapshot_omega"][k]) / omega_disr
+    box = _box(places, shown)
+    shape = (box[3] - box[2]) / (box[1] - box[0])
+    figure = new_figure(TWO_COLUMNS, (2 * 0.29 * min(shape, 1.5) + 0.12) * TWO_COLUMNS, title)
+    panels = figure.subplots(2, len(chosen), squeeze=False)
+    how_far, pull = _moved_scale(moved), force_scale(shown)
+    for column, k, at, frame, distance in zip(panels.T, chosen, places, shown, moved, strict=True):
+        colours = MOVED(how_far(np.maximum(distance, how_far.vmin)))[:, :3], force_colours(frame.force, pull)
+        for axes, colour in zip(column, colours, strict=True):
+            _show(axes, at, frame.radius, colour, box)
+        column[0].set_title(_words(run, k, frame, omega_disr), pad=3)
         dropped = run.sizes["monomer"] - len(frame.radius)
-        away = int(np.sum(np.max(np.abs(at[:, :2]), axis=1) - frame.radius > half_width)) + dropped
-        row[0].set_title(rf"$\omega/\omega_\mathrm{{disr}}$ = {ratio:.2f}", pad=2)
-        contacts = int(run["n_contacts"].values[np.argmin(np.abs(run["omega"].values - ratio * omega_disr))])
-        row[1].set_title(rf"$N_\mathrm{{con}}$ = {contacts}", pad=2)
+        inside = np.array([1, -1, 1, -1]) * (np.repeat(at[:, :2], 2, axis=1) - box) > -frame.radius[:, None]
+        away = int(np.sum(~inside.all(axis=1))) + dropped
         if away:
-            row[0].text(0.03, 0.01, f"{away} farther", transform=row[0].transAxes, zorder=3)
-    bar = ScalarMappable(Normalize(scale.vmin / 1e-9, scale.vmax / 1e-9), FORCES)
-    bar = figure.colorbar(bar, ax=panels, location="bottom", shrink=0.8, aspect=30, pad=0.01, extend="both")
-    bar.set_label(r"normal force $F_\mathrm{N}$ of greatest magnitude [nN], > 0 pushing")
+            column[0].text(0.03, 0.01, f"{away} farther", transform=column[0].transAxes, zorder=3)
+    _scale_bar(panels[1, 0], box)
+    first = float(run["snapshot_omega"][0]) / omega_disr
+    far = ScalarMappable(LogNorm(how_far.vmin / NM, how_far.vmax / NM), MOVED)
+    force = ScalarMappable(Normalize(pull.vmin / 1e-9, pull.vmax / 1e-9), FORCES)
+    labels = (
+        rf"moved since $\omega/\omega_\mathrm{{disr}}$ = {first:.2f} [nm]",
+        "normal force $F_\\mathrm{N}$ of greatest\nmagnitude [nN], > 0 pushing",
+    )
+    for row, bar, label in zip(panels, (far, force), labels, strict=True):
+        scale = figure.colorbar(bar, ax=row, shrink=0.9, aspect=18, pad=0.01, extend="both")
+        scale.set_label(label)
+        if bar is far:
+            scale.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     return figure
+
+
+def _box(places, shown):
+    """Left, right, bottom, top of all pictures [m]: of all monomers, but for those that flew far out of the first."""
+    boxes = np.array([outline(at, frame.radius) for at, frame in zip(places, shown, strict=True)])
+    reach = FARTHEST * np.max(np.abs(boxes[0]))
+    box = np.clip([boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()], -reach, reach)
+    margin = 0.02 * max(box[1] - box[0], box[3] - box[2])
+    return box + margin * np.array([-1, 1, -1, 1])
+
+
+def _moved_scale(moved):
+    """Logarithmic scale of displacements [m] from `LEAST` on, of whole decades, so that several figures share it."""
+    greatest = max(np.quantile(np.concatenate(moved), CROWDED), 2 * LEAST)
+    return LogNorm(LEAST, LEAST * 10 ** np.ceil(np.log10(greatest / LEAST)))
+
+
+def _words(run, k, frame, omega_disr):
+    """What stands above a column: omega, the contacts, and what has parted."""
+    ratio = float(run["snapshot_omega"][k]) / omega_disr
+    contacts = int(run["n_contacts"].values[np.argmin(np.abs(run["omega"].values - ratio * omega_disr))])
+    share = np.sum(frame.radius[frame.largest] ** 3) / np.sum(run["monomer_radius"].values ** 3)
+    whole = "in one piece" if share > 1 - 1e-9 else f"{100 * share:.0f} % in one piece"
+    return rf"$\omega/\omega_\mathrm{{disr}}$ = {ratio:.2f}" f"\n$N_\\mathrm{{con}}$ = {contacts}, {whole}"
+
+
+def _show(axes, at, radius, colour, box):
+    """Spheres in a panel with axes in nm that shows a box [m]."""
+    centre = np.array([box[0] + box[1], box[2] + box[3], 0.0]) / 2
+    half = 0.5 * max(box[1] - box[0], box[3] - box[2])
+    picture = render(at - centre, radius, colour, half, PIXELS)
+    (x, y, _), reach = nanometres(centre), nanometres(half)
+    axes.imshow(picture, extent=(x - reach, x + reach, y - reach, y + reach), interpolation="antialiased", zorder=2)
+    left, right, bottom, top = nanometres(box)
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.set_axis_off()
+
+
+def _scale_bar(axes, box):
+    """Scale bar at the lower left of a panel, with its length."""
+    left, right, bottom, top = nanometres(box)
+    length, gap = scale_length(0.3 * (right - left)), 0.02 * (top - bottom)
+    axes.plot([left, left + length], [bottom + gap] * 2, color="black", lw=1.6, solid_capstyle="butt", zorder=3)
+    axes.text(left, bottom + 2 * gap, f"{length:g} nm", va="bottom", zorder=3)
 
 
 def draw(files, settings):

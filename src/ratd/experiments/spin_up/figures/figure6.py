@@ -22,11 +22,14 @@ from ratd.pictures.style import (
 
 SIZES = (200e-9, 350e-9, 500e-9)
 """Sizes [m] that the paper shows."""
+START = {"ls": "none", "marker": "o", "ms": 3.2, "mfc": "white", "mec": "black", "mew": 0.7, "zorder": 3}
+END = {"ls": "none", "marker": "o", "ms": 3.4, "mfc": "black", "mec": "black", "mew": 0.3, "zorder": 4}
+"""Markers of a grain at rest and at disruption, whose colour and form a type gives."""
 
 
 @styled
 def figure6(table, material="a-C", sizes=SIZES, drive=None):
-    """Axis ratios c/b against b/a at the start and at disruption, a panel per size (Fig. 6).
+    """Axis ratios c/b against b/a at the start and at disruption, a panel a type and size (Fig. 6).
 
     Parameters
     ----------
@@ -35,83 +38,78 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     material : str
         Material shown.
     sizes : sequence of float
-        Effective radii [m], a panel each.
+        Effective radii [m], a column each.
     drive : str, optional
         Named in the title; default: what the table says.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Dots: relaxed grain at rest; crosses: largest fragment at omega_disr. Above the diagonal, c/b > b/a, a grain
-        is rather prolate, below it rather oblate, which the corners name; each panel counts the oblate ones at the
-        start and at disruption.
+        Open markers: relaxed grain at rest; filled ones: largest fragment at omega_disr; a line joins those of a grain.
+        Above the diagonal, c/b > b/a, a grain is rather prolate, below it rather oblate, which the corners name; each
+        panel counts the oblate ones at the start and at disruption. All panels have the same axes.
 
     References
     ----------
-    Reissl et al. (2024), A&A 692, A60, Fig. 6.
+    Reissl et al. (2024), A&A 692, A60, Fig. 6, where all types stand in one panel and no grain is joined.
     """
     drive = drive_of(table) if drive is None else drive
     table = table[table["material"] == material]
-    style = type_style(table["type"])
+    style = type_style(table["type"]) or {"": {}}
     width = ONE_COLUMN if len(sizes) == 1 else TWO_COLUMNS
-    figure = new_figure(width, 0.46 * TWO_COLUMNS, f"{material}, {drive_text(drive)}")
-    panels = figure.subplots(1, len(sizes), sharex=True, sharey=True, squeeze=False)[0]
+    height = (0.09 + 0.25 * len(style)) * TWO_COLUMNS
+    figure = new_figure(width, height, f"{material}, {drive_text(drive)}")
+    panels = figure.subplots(len(style), len(sizes), sharex=True, sharey=True, squeeze=False)
     greatest = np.array([1.5, 1.5])  # of b/a and c/b in all panels
-    for axes, size in zip(panels, sizes, strict=True):
-        here = table[np.isclose(table["a_eff"].astype(float), size, rtol=1e-6, atol=0)]
-        axes.set_title(rf"$a_\mathrm{{eff}}$ = {size / NM:.4g} nm, {plural(len(here), 'grain')}")
-        if not len(here):
-            empty(axes)
-        lines = 0
-        for kind, look in style.items():
-            grains = here[here["type"] == kind]
-            if not len(grains):
+    for row, (kind, look) in zip(panels, style.items(), strict=True):
+        for axes, size in zip(row, sizes, strict=True):
+            here = table[np.isclose(table["a_eff"].astype(float), size, rtol=1e-6, atol=0) & (table["type"] == kind)]
+            axes.set_title(rf"{kind}, $a_\mathrm{{eff}}$ = {size / NM:.4g} nm, {plural(len(here), 'grain')}", pad=3)
+            if not len(here):
+                empty(axes)
                 continue
-            start, end = axis_ratios(grains, "start"), axis_ratios(grains, "disr")
-            axes.plot(*start, **_dot(look))
-            axes.plot(*end, **_cross(look))
-            greatest = np.nanmax(np.column_stack([greatest, start, end]), axis=1)
-            (counts,) = oblate_counts(grains).to_dict("records")
+            ends = _joined(axes, here, look)
+            greatest = np.nanmax(np.column_stack([greatest, *ends]), axis=1)
+            (counts,) = oblate_counts(here).to_dict("records")
             first, last = (f"{counts[f'{when}_oblate']}/{counts[f'{when}_known']}" for when in ("start", "disr"))
-            text = f"{kind} oblate: {first} \N{RIGHTWARDS ARROW} {last}"
-            axes.text(0.97, 0.97 - 0.07 * lines, text, transform=axes.transAxes, ha="right", va="top", c=look["color"])
-            lines += 1
+            text = f"oblate: {first} \N{RIGHTWARDS ARROW} {last}"
+            axes.text(0.97, 0.96, text, transform=axes.transAxes, ha="right", va="top", color=look["color"])
+    _axes(panels, greatest)
+    handles = [Line2D([], [], label="at rest", **START), Line2D([], [], label=r"at $\omega_\mathrm{disr}$", **END)]
+    figure.legend(handles=handles, loc="outside lower center", ncols=2)
+    return figure
 
+
+def _joined(axes, table, look):
+    """Draw each grain of a panel at rest and at disruption, joined; returns the axis ratios of both, (2, n) each."""
+    start, end = axis_ratios(table, "start"), axis_ratios(table, "disr")
+    axes.plot(*np.stack([start, end], axis=1), color=look["color"], lw=0.6, alpha=0.6, zorder=2)
+    marker = {"marker": look["marker"], "mec": look["color"]}
+    axes.plot(*start, **START | marker)
+    axes.plot(*end, **END | marker | {"mfc": look["color"]})
+    return start, end
+
+
+def _axes(panels, greatest):
+    """Limits, ticks, diagonal and words of all panels, with room for the greatest b/a and c/b."""
     right, top = 1.1 * greatest
     # Strips without points: above all of them stand the counts, below 1, where no ratio is, a word.
-    top *= (top / 0.95) ** 0.5
-    bottom = top**-0.12
+    top *= (top / 0.95) ** 0.25
+    bottom = top**-0.16
     end = min(right, top)
-    for axes in panels:
+    for axes in panels.flat:
         axes.plot([1, end], [1, end], color=GREY, lw=0.8, zorder=1)
         axes.set(xscale="log", yscale="log", xlim=(0.95, right), ylim=(bottom, top))
-        axes.set_xlabel("axis ratio $b/a$")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(FixedLocator([1, 1.2, 1.5, 2, 3, 5, 10, 20, 50]))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
-        axes.text(0.03, 0.97, "prolate", transform=axes.transAxes, color=GREY, va="top")
+        axes.text(0.03, 0.96, "prolate", transform=axes.transAxes, color=GREY, va="top")
         axes.text(0.97, 0.02, "oblate", transform=axes.transAxes, color=GREY, ha="right", va="bottom")
-    panels[0].set_ylabel("axis ratio $c/b$")
-    handles = []
-    for kind, look in style.items():
-        handles.append(Line2D([], [], label=f"{kind} at rest", **_dot(look)))
-        handles.append(Line2D([], [], label=rf"{kind} at $\omega_\mathrm{{disr}}$", **_cross(look)))
-    columns = 2 if len(sizes) == 1 else len(handles)
-    if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=columns)
-    return figure
-
-
-def _dot(look):
-    """Filled marker of a type: a grain at rest."""
-    return {"ls": "none", "marker": look["marker"], "ms": 3.2, "mfc": look["color"], "mec": "white", "mew": 0.3}
-
-
-def _cross(look):
-    """Cross of a type, with other arms for each: a grain at disruption."""
-    cross = {"o": "x", "s": "+", "^": (6, 2, 0)}.get(look["marker"], (5, 2, 0))
-    return {"ls": "none", "marker": cross, "ms": 4.2, "mec": look["color"], "mew": 0.8, "zorder": 3}
+    for axes in panels[-1]:
+        axes.set_xlabel("axis ratio $b/a$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("axis ratio $c/b$")
 
 
 def axis_ratios(table, when):

@@ -1,17 +1,15 @@
 """Fig. 7: the angular velocity of disruption against size."""
 
 import numpy as np
-from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 
 from ratd.base.materials import Material, get_material
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
-from ratd.experiments.spin_up.eq33 import eq33, radius_of_reading
+from ratd.experiments.spin_up.eq33 import eq33, eq33_omega, radius_of_reading
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
 from ratd.pictures.style import (
-    GREY,
     ONE_COLUMN,
     TWO_COLUMNS,
     drive_of,
@@ -19,6 +17,7 @@ from ratd.pictures.style import (
     empty,
     logarithmic,
     mean_and_range,
+    middle_and_most,
     nanometres,
     new_figure,
     offsets,
@@ -28,14 +27,13 @@ from ratd.pictures.style import (
     type_style,
 )
 
-BOUND = {"lw": 0.7, "ls": (0, (3, 2)), "ms": 2.8, "mfc": "white", "mew": 0.6}
-PRINTED = {"color": GREY, "lw": 0.8, "ms": 2.8, "mfc": "white", "mew": 0.6, "zorder": 1}
-"""Lines with open markers, which tell the types apart."""
+FIT = {"lw": 1.0, "ls": "-", "zorder": 1}
+PRINTED = {"lw": 0.9, "ls": (0, (4, 2)), "zorder": 1}
 
 
 @styled
 def figure7(table, fit=None, drive=None, materials=None, grown=None):
-    """omega_disr against size, a panel per material, with the fit of Eq. 33, the cut bound and Table 3 (Fig. 7).
+    """omega_disr against size, a column a material, and below over what the paper has for the same grain (Fig. 7).
 
     Parameters
     ----------
@@ -53,9 +51,9 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
     Returns
     -------
     matplotlib.figure.Figure
-        Means as filled markers, minima to maxima as bars; fit as solid lines. Of the grown grains the mean cut bound as
-        dashed lines, and Eq. 33 with the printed A and alpha (Table 3, <a_mon> = 20 nm) and their N_con phi as grey
-        lines, both with open markers. The legend says how many these are.
+        Above, means as markers, minima to maxima as bars; the fit solid; dashed Eq. 33 with the printed A and alpha
+        (Table 3, <a_mon> = 20 nm) for the N_con phi of the grown grains, of which the legend says how many. Below,
+        medians and the middle two thirds of omega_disr over that Eq. 33 for each grain itself, where Table 3 has it.
 
     References
     ----------
@@ -65,44 +63,60 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
     n = int(table["omega_disr"].notna().sum())
     grown = table if grown is None else grown
     cells, at_rest = _cells(table), _cells(grown)
+    table = table.assign(ratio=table["omega_disr"] / eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS, materials))
     names = list(dict.fromkeys(cells["material"])) or [""]
     wide = len(names) > 1
     title = f"{plural(n, 'disrupted grain')}, {drive_text(drive)}"
-    figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.56 * TWO_COLUMNS, title)
+    figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.78 * TWO_COLUMNS, title)
     style = type_style(cells["type"])
     shifts = dict(zip(style, offsets(cells["a_eff"], len(style)), strict=True)) if len(cells) else {}
-    panels = figure.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
-    for axes, name in zip(panels, names, strict=True):
-        axes.set_title(name)
-        axes.set_yscale("log")
-        axes.set_xlabel(sizes_label())
-        here = cells[cells["material"] == name]
-        if not here["omega_disr_count"].any():
-            empty(axes, "no disrupted grains")
-        for kind, look in style.items():
-            cell = here[here["type"] == kind]
-            if not len(cell):
-                continue
-            material = get_material(name, materials)
-            x = nanometres(cell["a_eff"])
-            mean_and_range(axes, x + nanometres(shifts[kind]), cell, "omega_disr", look)
-            rest = at_rest[(at_rest["material"] == name) & (at_rest["type"] == kind)]
-            axes.plot(nanometres(rest["a_eff"]), rest["cut_bound_mean"], **look | BOUND)
-            if fit is not None and name in fit["material"].values and kind in fit["type"].values:
-                reading = fit["mean_radius"].values[0]
-                best = fit.sel(mean_radius=reading, material=name, type=kind)
-                radius = radius_of_reading(reading) or np.exp(cell["log_radius_mean"])
-                line = _line(cell, material, radius, float(best["A"]), float(best["alpha"]))
-                axes.plot(x, line, color=look["color"], lw=1.0)
-            if (name, kind) in TABLE_3:
-                line = _line(rest, material, PAPER_MEAN_RADIUS, *TABLE_3[name, kind])
-                axes.plot(nanometres(rest["a_eff"]), line, **look | PRINTED)
-    logarithmic(panels[0].yaxis)
-    panels[0].set_ylabel(r"$\omega_\mathrm{disr}$ [rad s$^{-1}$]")
+    panels = figure.subplots(2, len(names), sharex=True, sharey="row", squeeze=False, height_ratios=[3, 2])
+    for (top, bottom), name in zip(panels.T, names, strict=True):
+        top.set_title(name)
+        bottom.set_xlabel(sizes_label())
+        for axes in (top, bottom):
+            axes.set_yscale("log")
+        here = table[table["material"] == name]
+        if not here["omega_disr"].notna().any():
+            empty(top, "no disrupted grains")
+        _absolute(top, *(every[every["material"] == name] for every in (cells, at_rest)), fit, style, shifts, materials)
+        if here["ratio"].notna().any():
+            bottom.axhline(1.0, color="black", lw=0.6)
+            for kind, look in style.items():
+                own = here[here["type"] == kind]
+                middle_and_most(bottom, own["a_eff"] + shifts[kind], own["ratio"], look)
+        else:
+            empty(bottom, "no grain that Table 3 has")
+    for axes, text in zip(panels[:, 0], (r"$\omega_\mathrm{disr}$ [rad s$^{-1}$]", _RATIO), strict=True):
+        axes.set_ylabel(text)
+        logarithmic(axes.yaxis)
     if len(cells):
-        panels[0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
+        panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
     _legend(figure, style, len(grown), wide)
     return figure
+
+
+_RATIO = "over Eq. 33 as printed\nfor the same grain"
+
+
+def _absolute(axes, cells, at_rest, fit, style, shifts, materials):
+    """omega_disr of one material [rad/s], with the lines of the fit and of the printed Table 3."""
+    for kind, look in style.items():
+        cell, rest = (every[every["type"] == kind] for every in (cells, at_rest))
+        if not len(cell):
+            continue
+        name = cell["material"].iloc[0]
+        material = get_material(name, materials)
+        mean_and_range(axes, nanometres(cell["a_eff"] + shifts[kind]), cell, "omega_disr", look)
+        if fit is not None and name in fit["material"].values and kind in fit["type"].values:
+            reading = fit["mean_radius"].values[0]
+            best = fit.sel(mean_radius=reading, material=name, type=kind)
+            radius = radius_of_reading(reading) or np.exp(cell["log_radius_mean"])
+            line = _line(cell, material, radius, float(best["A"]), float(best["alpha"]))
+            axes.plot(nanometres(cell["a_eff"]), line, color=look["color"], **FIT)
+        if (name, kind) in TABLE_3:
+            line = _line(rest, material, PAPER_MEAN_RADIUS, *TABLE_3[name, kind])
+            axes.plot(nanometres(rest["a_eff"]), line, color=look["color"], **PRINTED)
 
 
 def _cells(table):
@@ -128,23 +142,12 @@ def _line(cell, material, radius, A, alpha):
 
 
 def _legend(figure, style, n_grown, wide):
-    """One legend for all panels: types, then kinds of line, those with markers once for each type."""
-
-    def each_type(line):
-        return tuple(Line2D([], [], **look | line) for look in style.values())
-
-    entries = {kind: Line2D([], [], ls="none", **look) for kind, look in style.items()}
-    entries["fit of Eq. 33"] = Line2D([], [], color="black", lw=1.0)
-    entries[f"mean cut bound of {plural(n_grown, 'grown grain')}"] = each_type(BOUND)
-    entries["Eq. 33 with Table 3 as printed"] = each_type(PRINTED)
-    figure.legend(
-        entries.values(),
-        entries.keys(),
-        handler_map={tuple: HandlerTuple(ndivide=None, pad=0.0)},
-        handlelength=4.5,
-        loc="outside lower center",
-        ncols=3 if wide else 1,
-    )
+    """One legend for all panels: types, then kinds of line."""
+    handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in style.items()]
+    handles.append(Line2D([], [], color="black", label="fit of Eq. 33", **FIT))
+    text = f"Eq. 33 with Table 3 as printed, {plural(n_grown, 'grown grain')}"
+    handles.append(Line2D([], [], color="black", label=text, **PRINTED))
+    figure.legend(handles=handles, handlelength=2.5, loc="outside lower center", ncols=5 if wide else 1)
 
 
 def draw(files, settings):
