@@ -5,11 +5,12 @@ import numpy as np
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.pulled import FACTOR, MARKS, beside_spin, usual
-from ratd.pictures.style import GREY, TWO_COLUMNS, empty, logarithmic, new_figure, styled, type_style
+from ratd.pictures.style import GREY, TWO_COLUMNS, bar_lengths, empty, logarithmic, new_figure, styled, type_style
 
 PANELS = {"box": "squeezed, pulled in the box", "ends": "as grown, pulled by the ends", "spin": "as grown, turned"}
 """Panel -> its title."""
 _STATED = r"$0.951\,\phi^{1.8}$"
+_SUMMARY = {"marker": "o", "ms": 5, "mfc": "white", "mew": 1.2, "capsize": 2.5, "elinewidth": 1.2, "ls": "none"}
 
 
 @styled
@@ -49,8 +50,9 @@ def pulled(table, spun):
     panels[0].set_ylabel(r"$S\,\langle a\rangle/\gamma$")
     logarithmic(panels[0].xaxis)
     logarithmic(panels[0].yaxis)
+    panels[0].errorbar([], [], [], label="mean, middle two thirds", color="black", **_SUMMARY)
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    figure.legend(handles, labels, loc="outside lower center", ncols=5)
     return figure
 
 
@@ -76,7 +78,5 @@ def _summary(axes, phi, strength, colour):
     ratio = strength / phi**1.8
     x = np.exp(np.log(phi).mean())
     middle, low, high = (value * x**1.8 for value in (np.exp(np.log(ratio).mean()), *np.quantile(ratio, [0.16, 0.84])))
-    axes.errorbar(
-        x, middle, [[max(middle - low, 0.0)], [max(high - middle, 0.0)]], marker="o", ms=5, mfc="white", mew=1.2,
-        color=colour, capsize=2.5, elinewidth=1.2, zorder=5,
-    )  # fmt: skip
+    bars = bar_lengths([middle], [low], [high])
+    axes.errorbar(x, middle, bars, color=colour, zorder=5, **_SUMMARY)
