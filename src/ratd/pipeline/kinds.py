@@ -39,11 +39,13 @@ HOMES = {
     "formulae": "ratd.experiments.spin_up.formulae",
     "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
+    "pulled": "ratd.experiments.spin_up.pulled",
     **dict.fromkeys(("built_clusters", "collisions"), "ratd.experiments.collision.files"),
     **dict.fromkeys(
         ("collision_table", "collision_thresholds", "collision_clusters"), "ratd.experiments.collision.tables"
     ),
     "collision_likeness": "ratd.experiments.collision.likeness",
+    "lammps_spin_up": "ratd.validation.lammps_spin_up",
     **{
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (

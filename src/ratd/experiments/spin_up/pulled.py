@@ -1,0 +1,252 @@
+"""Tensile strengths of the grains of the spin-up, beside the tension that they bear when they turn apart.
+
+`ratd.validation.pulled` pulls the grains and writes the files whose kind stands here. Each grain is pulled in two ways.
+In the *box* its own copies squeeze it until it fills a periodic box as densely as itself, which changes it, and the box
+grows along one axis. By its *ends* it is pulled as it stands. A strength S is told as S <a>/(gamma phi^1.8), <a> being
+the mean radius of the monomers and phi the filling factor of what is pulled: 0.951 by Tatsuuma et al. (2019).
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.base.errors import InputError
+from ratd.base.statistics import mean_of
+from ratd.experiments.spin_up.cells import TYPES, size_key, sort_cells
+from ratd.pipeline import io
+from ratd.pipeline.blocks import material_of, rows
+from ratd.pipeline.documents import Measured
+from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
+
+__all__ = ["AXES", "FACTOR", "KIND", "VARIANTS", "WAYS", "beside_spin", "findings", "outer_radius", "read", "usual"]
+
+WAYS = ("box", "ends")
+"""How a grain is pulled; the flag in a file is the place in this list."""
+AXES = ("shortest", "middle", "longest")
+"""Principal axes of a grain; the flag in a file is the place in this list."""
+VARIANTS = ("usual", "slow", "less", "more")
+"""The pull that counts, and with one thing changed: the rates, or the column ``part`` of the table."""
+FACTOR = float(tensile_strength_tatsuuma2019(1.0, 1.0, 1.0))
+"""S <a>/(gamma phi^1.8) by Tatsuuma et al. (2019)."""
+MARKS = {"": "omega_mass_75", " first": "omega_first_loss"}
+"""Marks whose tension stands beside the strength, by what is put to the name of a slot."""
+
+_PULL = {
+    "part": ("1", "box: filling factor squeezed to, over that of the grain; ends: part of the mass held at each"),
+    "squeeze_rate": ("1", "strain rate C_v of the squeezing"),
+    "strain_rate": ("1", "strain rate C_v of the pulling"),
+    "phi": ("1", "filling factor of what is pulled"),
+    "strength": ("Pa", "greatest tension; box: in the mean over 2 % in L"),
+    "peak": ("Pa", "greatest tension in the mean over 0.5 % in L"),
+    "strain": ("1", "ln L (box), or way of the ends over their distance, at the greatest tension"),
+    "residual": ("Pa", "pressure left at rest before the pulling"),
+    "kept": ("1", "contacts of the grain that the squeezing has left, over all that it had"),
+    "new": ("1", "new contacts within the grain, over all that it had"),
+    "across": ("1", "number of contacts with own copies along the pulled axis"),
+    "unequal": ("1", "mean difference of the forces at both ends, over the greatest"),
+    "omega": ("rad s-1", "at which half of the turning grain pulls at the other as hard as it holds"),
+    "steps": ("1", "time steps"),
+}
+"""Numbers of a pull: units and meaning; NaN where it has none."""
+
+KIND = register(
+    "pulled",
+    Kind(
+        "Grains pulled until they come apart",
+        {
+            **MATERIAL,
+            **over(
+                (ROW,),
+                {
+                    "a_eff": ("m", "effective radius"),
+                    "filling_factor": ("1", "filling factor of the grain as grown"),
+                    "mean_monomer_radius": ("m", "mean radius of its monomers"),
+                },
+            ),
+            **over(
+                (ROW,),
+                {"seed": ("1", "seed"), "n_monomers": ("1", "monomers"), "n_contacts": ("1", "contacts")},
+                dtype="i8",
+            ),
+            "source": Variable((ROW,), "str", "", "hash of the source that pulled it"),
+            **row_sizes(("pull",)),
+            "way": Variable(("pull",), "i1", "", "how it was pulled", flags=WAYS),
+            "axis": Variable(("pull",), "i1", "", "along which of its principal axes", flags=AXES),
+            "variant": Variable(("pull",), "i1", "", "what was changed", flags=VARIANTS),
+            **over(("pull",), _PULL, nan=True),
+        },
+        attributes=("material", "type"),
+        ragged=("pull",),
+    ),
+)
+
+
+def outer_radius(a_eff, filling_factor):
+    """Radius [m] of the porous sphere that stands for a grain, a_eff phi^(-1/3); S by the ends is force over pi times
+    its square."""
+    return a_eff * filling_factor ** (-1.0 / 3.0)
+
+
+def read(folder):
+    """Table of all pulls.
+
+    Parameters
+    ----------
+    folder : path-like
+        Of `ratd.validation.pulled`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a pull, in the order of the paper, with what is known of its grain: material, type, a_eff, seed,
+        n_monomers, n_contacts, filling_factor, mean_monomer_radius, surface_energy, density. ``ratio`` is
+        S <a>/(gamma phi^1.8).
+
+    Raises
+    ------
+    InputError
+        If there are no files.
+    """
+    found = []
+    for path in sorted(Path(folder).glob("*.nc")):
+        file = io.read(path, KIND)
+        material = material_of(file)
+        constants = {"surface_energy": material.surface_energy, "density": material.density}
+        for row in rows(file, KIND):
+            grain = {name: row[name].item() for name in row.data_vars if not row[name].dims}
+            own = row[["way", "axis", "variant", *_PULL]].to_dataframe()
+            found.append(own.assign(material=material.name, type=row.attrs["type"], **grain, **constants))
+    if not found:
+        raise InputError(f"{folder}: holds no pulled grains.")
+    table = sort_cells(pd.concat(found, ignore_index=True))
+    for name, words in (("way", WAYS), ("axis", AXES), ("variant", VARIANTS)):
+        table[name] = np.array(words)[table[name]]
+    table["ratio"] = _ratio(table["strength"], table, table["phi"])
+    return table
+
+
+def _ratio(strength, grains, phi):
+    """S <a>/(gamma phi^1.8) of strengths S [Pa]."""
+    formula = tensile_strength_tatsuuma2019(grains["surface_energy"], grains["mean_monomer_radius"], phi)
+    return FACTOR * strength / formula
+
+
+def usual(table):
+    """The pulls that count, one a grain and way: along its longest axis, in the variant ``usual``."""
+    return table[(table["axis"] == "longest") & (table["variant"] == "usual")]
+
+
+def beside_spin(table, spun):
+    """What the spin-up says of the same grains.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `read`, or a part of it.
+    spun : pandas.DataFrame
+        Of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The table with the marks; for each ``spin_MARK``, the mean tension in the mid-plane of the turning sphere that
+        stands for the grain, in units of gamma/<a> phi^1.8. NaN for a grain that was not spun up.
+    """
+    keys = ["material", "type", "size", "seed"]
+    known = spun.assign(size=size_key(spun["a_eff"]))[[*keys, *MARKS.values()]]
+    joined = table.assign(size=size_key(table["a_eff"])).merge(known, on=keys, how="left", validate="many_to_one")
+    phi = joined["filling_factor"]
+    outer = outer_radius(joined["a_eff"], phi)
+    for mark in MARKS.values():
+        tension = midplane_tension(joined[mark], joined["density"], phi, outer)
+        joined[f"spin_{mark}"] = _ratio(tension, joined, phi)
+    return joined
+
+
+def findings(table, spun):
+    """What a document says of it.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `read`.
+    spun : pandas.DataFrame
+        Of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+
+    Returns
+    -------
+    dict
+        ``pulled.TYPE SLOT``, also for TYPE ``all``: geometric means over grains, all cells (a material, type and size)
+        with the same weight, with standard errors from the scatter within the cells. ``box``, ``ends`` are S <a>/(gamma
+        phi^1.8); ``spin`` the same of the tension at the loss of a quarter of the mass; ``over spin``, ``ends over
+        spin`` the ratios of the same grains; ``omega`` what the force at the ends stands for, over the omega of the
+        mark; these with ``first`` behind them for the first loss. ``box slow``, ``box less``, ``box more``, ``ends
+        slow``, ... are strengths of a variant over the usual one of the same grains, ``ends middle``, ``ends shortest``
+        those along other axes. ``kept`` and ``new`` (means) say what became of the contacts in the box, ``across`` how
+        many held to copies; ``peak`` is what a shorter mean would give over the strength, ``residual`` the pressure
+        left over the strength (median).
+    """
+    own = beside_spin(usual(table), spun)
+    grains = table.drop_duplicates(["material", "type", "a_eff", "seed"])
+    values = {
+        "pulled.grains": len(grains),
+        "pulled.beside": int((own["spin_omega_mass_75"].notna() & (own["way"] == "box")).sum()),
+        "pulled.fewest monomers": int(grains["n_monomers"].min()),
+        "pulled.most monomers": int(grains["n_monomers"].max()),
+        "pulled.unequal": float(own["unequal"].median()),
+    }
+    for kind in (*(kind for kind in TYPES if (own["type"] == kind).any()), "all"):
+        of_kind = {f"pulled.{kind} {name}": value for name, value in _of_type(_only(own, kind)).items()}
+        varied = {f"pulled.{kind} {name}": value for name, value in _varied(_only(table, kind)).items()}
+        values |= of_kind | varied
+    return values
+
+
+def _only(table, kind):
+    return table if kind == "all" else table[table["type"] == kind]
+
+
+def _of_type(own):
+    """Slots of the usual pulls of a type, beside the spin-up."""
+    box, ends = (own[own["way"] == way] for way in WAYS)
+    values = {"box": _geometric(box, box["ratio"]), "ends": _geometric(ends, ends["ratio"])}
+    values["box over formula"] = _geometric(box, box["ratio"] / FACTOR)
+    values["ends over formula"] = _geometric(ends, ends["ratio"] / FACTOR)
+    for word, mark in MARKS.items():
+        values[f"spin{word}"] = _geometric(box, box[f"spin_{mark}"])
+        values[f"over spin{word}"] = _geometric(box, box["ratio"] / box[f"spin_{mark}"])
+        values[f"ends over spin{word}"] = _geometric(ends, ends["ratio"] / ends[f"spin_{mark}"])
+        values[f"omega{word}"] = _geometric(ends, ends["omega"] / ends[mark])
+    for column in ("kept", "new", "across"):
+        values[column] = Measured(*mean_of(box[column], _cells(box)))
+    values["peak"] = _geometric(box, box["peak"] / box["strength"])
+    values["residual"] = float((box["residual"] / box["strength"]).median())
+    return values
+
+
+def _varied(table):
+    """Slots of variants over the usual pull of the same grain."""
+    keys = ["way", "material", "type", "a_eff", "seed"]
+    reference = usual(table)[[*keys, "ratio"]].rename(columns={"ratio": "reference"})
+    joined = table.merge(reference, on=keys, validate="many_to_one")
+    values = {}
+    for way in WAYS:
+        for word in VARIANTS[1:]:
+            part = joined[(joined["way"] == way) & (joined["variant"] == word)]
+            values[f"{way} {word}"] = _geometric(part, part["ratio"] / part["reference"])
+    for word in AXES[:2]:
+        part = joined[(joined["way"] == "ends") & (joined["axis"] == word)]
+        values[f"ends {word}"] = _geometric(part, part["ratio"] / part["reference"])
+    return values
+
+
+def _cells(table):
+    return table.groupby(["material", "type", "a_eff"], sort=False).ngroup()
+
+
+def _geometric(table, values):
+    """Geometric mean and its standard error, see `mean_of`."""
+    mean, error = mean_of(np.log(values), _cells(table))
+    return Measured(float(np.exp(mean)), float(np.exp(mean) * error))
