@@ -1,9 +1,10 @@
-"""Theory: the angular velocity of disruption against two estimates that need no simulation."""
+"""Theory: the angular velocity of disruption against three estimates that need no simulation."""
 
 import math
 
 from ratd.aggregates.growth import grow
 from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.firm_bound import firm_bound
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.tensile import midplane_bound
@@ -15,6 +16,7 @@ COLUMNS = {
     "n_contacts": ("1", "contacts"),
     "porosity": ("1", "porosity"),
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
+    "firm_bound": ("rad s-1", "bound on omega of the grain as it stands whose contacts hold sideways and push as well"),
     "midplane": ("rad s-1", "omega at which the mean tension at the mid-plane is the strength of Tatsuuma 2019"),
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
 }
@@ -48,6 +50,7 @@ def compute(settings, progress=None):
                 n_contacts=grain.n_contacts,
                 porosity=grain.shape.porosity,
                 cut_bound=cut_bound(grain),
+                firm_bound=firm_bound(grain),
                 midplane=math.nan if solid else midplane_bound(grain),
                 **{name: float(marks[name]) for name in MARKS},
             )
