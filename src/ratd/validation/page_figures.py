@@ -1,0 +1,161 @@
+"""The figures of docs/validation.md, but for that of LAMMPS; each is drawn from the table of a check."""
+
+import numpy as np
+
+from ratd.base.statistics import median_of
+from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
+from ratd.pictures.style import (
+    GREY,
+    HIGHLIGHT,
+    ONE_COLUMN,
+    TWO_COLUMNS,
+    TYPE_COLOUR,
+    TYPE_MARKER,
+    logarithmic,
+    new_figure,
+    styled,
+)
+from ratd.validation.damping import RATE, WAITING
+from ratd.validation.page_values import TYPES, off_the_answer, ratios, runs_of_solid_grains
+
+__all__ = ["apart", "bounds", "late_coriolis", "steps", "viscous_time"]
+
+STARTS = {
+    "waiting": ("waiting (the default)", "#0072B2", "o"),
+    "damped": ("not waiting, damped", "#D55E00", "s"),
+    "undamped": ("not waiting, undamped", "#000000", "x"),
+}
+
+
+def _spread(count, width):
+    """Shifts that keep signs of one column apart."""
+    return width * np.sin(2.4 * np.arange(count))
+
+
+@styled
+def apart(table):
+    """Figure: pairs of monomers that part, how far from the exact answer."""
+    pairs = off_the_answer(table)
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Two monomers that are spun up until they part")
+    panels = figure.subplots(1, 2, sharey=True)
+    equal = pairs["radius_1"] == pairs["radius_2"]
+    for start, (label, colour, marker) in STARTS.items():
+        part = pairs[pairs["start"] == start]
+        same, other = part[equal], part[~equal]
+        style = dict(color=colour, linestyle="none", marker=marker, markersize=2.8, alpha=0.7)
+        panels[0].plot(same["radius_1"] * 1e9, 100 * same["off"], label=label, **style)
+        panels[1].plot(other["radius_2"] / other["radius_1"], 100 * other["off"], **style)
+    panels[0].set_ylabel("$\\omega$ over the exact answer, less 1 [%]")
+    panels[0].set_xlabel("radius of both [nm]")
+    panels[1].set_xlabel("ratio of the radii")
+    for axes, title in zip(panels, ("equal", "unequal"), strict=True):
+        axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=0)
+        axes.set_title(title)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def steps(energy, frames):
+    """Figure: error of the energy and distance between two frames against the step, medians and all grains."""
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Free grains of 100 nm, by the length of the step")
+    panels = figure.subplots(1, 2)
+    shown = (
+        (energy, "error", "error of the energy over kinetic energy"),
+        (frames, "distance", "distance over mean radius"),
+    )
+    for axes, (table, column, label) in zip(panels, shown, strict=True):
+        worst = table[column].abs().groupby([table["type"], table["seed"], table["timestep_factor"]]).max()
+        for kind in TYPES:
+            grains = worst[kind].unstack("timestep_factor")
+            f = grains.columns.to_numpy(float)
+            axes.fill_between(f, grains.min(), grains.max(), color=TYPE_COLOUR[kind], alpha=0.2, linewidth=0)
+            axes.plot(f, grains.median(), TYPE_MARKER[kind] + "-", color=TYPE_COLOUR[kind], label=kind)
+        middle = worst.groupby("timestep_factor").median()
+        f = middle.index.to_numpy(float)
+        axes.plot(f, 0.15 * middle.iloc[0] * (f / f[0]) ** 2, ":", color="black", label="goes with $f^2$")
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel("step factor $f$")
+        axes.set_ylabel(label)
+    logarithmic(panels[0].xaxis)
+    logarithmic(panels[1].xaxis)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+@styled
+def bounds(table):
+    """Figure: omega of the first loss of whole grains over three estimates without a simulation."""
+    figure = new_figure(
+        TWO_COLUMNS, 0.4 * TWO_COLUMNS, "First loss of mass (waiting, q-S) over what needs no simulation"
+    )
+    axes = figure.subplots()
+    shown = {"cut_bound": "cut bound", "firm_bound": "firm bound", "midplane": "mean tension =\ntensile strength"}
+    for place, column in enumerate(shown):
+        for shift, kind in zip((-0.25, 0.0, 0.25), TYPES, strict=True):
+            part = np.sort((table["omega_first_loss"] / table[column])[table["type"] == kind])
+            x = place + shift + _spread(len(part), 0.07)
+            axes.plot(
+                x, part, TYPE_MARKER[kind], color=TYPE_COLOUR[kind], linestyle="none", alpha=0.7,
+                label=kind if place == 0 else None,
+            )  # fmt: skip
+            axes.plot(place + shift + np.array([-0.1, 0.1]), 2 * [np.median(part)], color="black", linewidth=1.2)
+    axes.axhline(1.0, color=GREY, linewidth=0.6, zorder=0)
+    axes.set_xticks(range(len(shown)), list(shown.values()))
+    axes.tick_params(axis="x", length=0)
+    axes.set_ylim(0.0, None)
+    axes.set_ylabel("$\\omega$ of the first loss, ratio")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def viscous_time(table):
+    """Figure: what a longer viscous time does, by the rate of the spin-up."""
+    figure = new_figure(ONE_COLUMN * 1.35, 0.9 * ONE_COLUMN, "Viscous time of 9 ps in place of 5 ps (a-C, 100 nm)")
+    waiting, axes = figure.subplots(1, 2, sharey=True, width_ratios=(1, 5))
+    rate = ratios(table[table["study"] == RATE], "omega_mass_75", (9, 5), ["epsilon"])
+    quiet = ratios(table[table["study"] == WAITING], "omega_mass_75", (9, 5), [])
+    for shift, kind in zip((-0.1, 0.1), ("BA", "BAM2"), strict=True):
+        part = rate[rate["type"] == kind]
+        found = [(epsilon, median_of(own["ratio"])) for epsilon, own in part.groupby("epsilon")]
+        style = dict(color=TYPE_COLOUR[kind], marker=TYPE_MARKER[kind], capsize=1.5, elinewidth=0.8)
+        x, y, error = np.array([(epsilon, m["median"], m["error"]) for epsilon, m in found]).T
+        axes.errorbar(x, 100 * (y - 1), 100 * error, label=kind, **style)
+        m = median_of(quiet.loc[quiet["type"] == kind, "ratio"])
+        waiting.errorbar([shift], [100 * (m["median"] - 1)], [100 * m["error"]], linestyle="none", **style)
+    for panel in (waiting, axes):
+        panel.axhline(100 * (VISCOUS_EFFECT - 1), color=HIGHLIGHT, linewidth=1.2, label="printed, BAM2")
+        panel.axhline(0.0, color=GREY, linewidth=0.6, zorder=0)
+    axes.set_xscale("log")
+    logarithmic(axes.xaxis)
+    waiting.set_xlim(-0.5, 0.5)
+    waiting.set_xticks([0.0], ["waiting"])
+    axes.set_xlabel(r"rate $\varepsilon$ of a spin-up that does not wait")
+    waiting.set_ylabel("rise of $\\omega$ at a quarter lost [%]")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+@styled
+def late_coriolis(table):
+    """Figure: the drive literal beside what a solid grain gives."""
+    runs = runs_of_solid_grains(table)
+    figure = new_figure(
+        ONE_COLUMN * 1.35, 0.85 * ONE_COLUMN, "Printed terms of the frame, Coriolis force half a step late"
+    )
+    axes = figure.subplots()
+    for kind in TYPES:
+        part = runs[runs["type"] == kind]
+        axes.plot(
+            part["omega_first_loss"] / part["known"], 100 * (part["omega_first_loss"] / part["solid"] - 1.0),
+            TYPE_MARKER[kind], color=TYPE_COLOUR[kind], linestyle="none", alpha=0.7, label=kind,
+        )  # fmt: skip
+    axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=0)
+    axes.set_xscale("log")
+    logarithmic(axes.xaxis)
+    axes.set_xlabel("$\\omega$ of the first loss over that of the consistent model")
+    axes.set_ylabel("over that of a solid grain, less 1 [%]")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
