@@ -1,6 +1,6 @@
 """docs/validation.md, its figures and its tables of numbers, drawn from the tables of the checks beside them.
 
-python -m ratd.validation.page collect RESULTS    take the checks that are there, such as results/validation/full
+python -m ratd.validation.page collect RESULTS    take the pieces that are there, such as of results/validation/full
 python -m ratd.validation.page redraw             figures, tables and text, in seconds
 """
 
@@ -12,14 +12,13 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.errors import FileError
-from ratd.base.materials import MATERIALS
 from ratd.experiments.collision.tables import collision_table
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import page_figures, page_lammps, page_values, quasi_static_page
-from ratd.validation.tables import CASE, as_dataset, read_tables
+from ratd.validation.tables import CASE, as_dataset
 
 __all__ = ["collect", "main", "read_data", "redraw", "values"]
 
@@ -32,6 +31,8 @@ CHECKS = (
     "literal",
 )  # fmt: skip
 """One file each, with a row a case."""
+MADE = ("settings_hash", "code_hash", "versions")
+"""What a table keeps of each of its pieces."""
 COMPRESSION = "docs/compression/data/sets/*.nc"
 COLLISION = "docs/collision/data/*/*.nc"
 """Production runs whose balance of energy is told."""
@@ -40,7 +41,7 @@ FROM_PHI = 0.1
 
 
 def collect(results, folder="."):
-    """Take the checks that a folder of results has finished, and the balances of energy of compressions and collisions.
+    """Take the pieces of the checks that a folder of results has, and the balances of compressions and collisions.
 
     Parameters
     ----------
@@ -52,25 +53,49 @@ def collect(results, folder="."):
     Raises
     ------
     FileError
-        If no check is finished.
+        If there is no piece.
     """
     folder = Path(folder)
-    finished = [check for check in CHECKS if Path(results, f"{check}.csv").is_file()]
-    if not finished:
-        raise FileError(f"{results}: no check is finished; `snakemake --cores 2 {results}/energy.csv` makes one")
-    for check in finished:
-        kind = f"validation_{check}"
-        paths = sorted(Path(results, check).glob("*.nc"))
-        pieces = [[path.stem, *_made(io.read(path, kind))] for path in paths]
-        table = as_dataset(read_tables(paths, kind).to_dict("records"), kind)
-        io.write(folder / DATA / f"{check}.nc", table.assign_attrs(pieces=json.dumps(pieces)), kind)
+    found = {check: sorted(Path(results, check).glob("*.nc")) for check in CHECKS}
+    if not any(found.values()):
+        raise FileError(f"{results}: holds no piece of a check; `snakemake --cores 2 {results}/energy.csv` makes some")
+    for check, paths in found.items():
+        if paths:
+            kind, target = f"validation_{check}", folder / DATA / f"{check}.nc"
+            io.write(target, merged(target, paths, kind), kind)
     with atomic(folder / DATA / "balance.csv") as temporary:
         balance(folder).to_csv(temporary, index=False, float_format="%.4g")
 
 
-def _made(piece):
-    """How many cases a piece has, and with which settings, source and versions it was made."""
-    return piece.sizes[CASE], {name: str(piece.attrs[name]) for name in ("settings_hash", "code_hash", "versions")}
+def merged(target, paths, kind):
+    """The table of a check with some pieces more, or in place of those of the same names.
+
+    Parameters
+    ----------
+    target : path-like
+        The table as it is, if there is one. It names its pieces in ``pieces``: for each the name, the number of cases,
+        and with which settings, source and versions it was made.
+    paths : list of path-like
+        Files of pieces.
+    kind : str
+        From `ratd.validation.tables.table_kind`.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    parts = {}
+    if Path(target).is_file():
+        old, first = io.read(target, kind), 0
+        for name, cases, made in json.loads(old.attrs["pieces"]):
+            parts[name] = old.isel({CASE: slice(first, first + cases)}), made
+            first += cases
+    for path in paths:
+        piece = io.read(path, kind)
+        parts[Path(path).stem] = piece, {name: str(piece.attrs[name]) for name in MADE}
+    rows = pd.concat([part.to_dataframe() for part, _ in parts.values()]).to_dict("records")
+    pieces = [[name, part.sizes[CASE], made] for name, (part, made) in parts.items()]
+    return as_dataset(rows, kind).assign_attrs(pieces=json.dumps(pieces))
 
 
 def balance(folder):
@@ -125,9 +150,10 @@ def values(tables):
     worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
     found["scheme.verdict"] = "met" if worst < page_values.SHIFTED else "open"
     found["scheme.all verdict"] = "met" if scheme["classes"] == scheme["all classes"] else "open"
+    found["scheme.BA large"] = page_values.large_fluffy(tables["quasi_static"])
     found["scheme.DMT over JKR"] = np.sqrt(4.0 / 3.0)
-    found["scheme.materials"] = ", ".join(sorted(MATERIALS))
-    return found
+    found |= {"limit.near": page_lammps.NEAR, "limit.force": page_lammps.FORCE}
+    return found | page_values.limits()
 
 
 def numbers(tables):

@@ -86,12 +86,16 @@ def steps(energy, frames):
 
 @styled
 def bounds(table):
-    """Figure: omega of the first loss of whole grains over three estimates without a simulation."""
+    """Figure: omega of the first loss of whole grains over bounds that need no simulation."""
     figure = new_figure(
-        TWO_COLUMNS, 0.4 * TWO_COLUMNS, "First loss of mass (waiting, q-S) over what needs no simulation"
+        TWO_COLUMNS, 0.4 * TWO_COLUMNS, "First loss of mass (q-S, 75 to 200 nm) over bounds without a simulation"
     )
     axes = figure.subplots()
-    shown = {"cut_bound": "cut bound", "firm_bound": "firm bound", "midplane": "mean tension =\ntensile strength"}
+    shown = {
+        "cut_bound": "cut bound,\nas grown",
+        "firm_bound": "firm bound,\nas grown",
+        "firm_bound_at_loss": "firm bound, shape\njust before the loss",
+    }
     for place, column in enumerate(shown):
         for shift, kind in zip((-0.25, 0.0, 0.25), TYPES, strict=True):
             part = np.sort((table["omega_first_loss"] / table[column])[table["type"] == kind])
@@ -105,7 +109,7 @@ def bounds(table):
     axes.set_xticks(range(len(shown)), list(shown.values()))
     axes.tick_params(axis="x", length=0)
     axes.set_ylim(0.0, None)
-    axes.set_ylabel("$\\omega$ of the first loss, ratio")
+    axes.set_ylabel("$\\omega$ of the first loss over the bound")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 

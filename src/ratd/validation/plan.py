@@ -131,7 +131,9 @@ class Checks:
 
     def _pull_off(self, own):
         shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
-        return {material: shared | {"material": material} for material in own["materials"]}
+        pieces = {material: shared | {"material": material} for material in own["materials"]}
+        waiting = {key: own[key] for key in ("pairs", "ratios", "seed")}
+        return pieces | {f"waiting_{material}": waiting | {"material": material} for material in own["materials"]}
 
     def _damping(self, own):
         shared = {key: own[key] for key in ("material", "epsilon", "viscous_time_ps", "timestep_factor")}

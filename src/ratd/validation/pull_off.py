@@ -43,9 +43,9 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, pairs (number of random radii), ratios (list), seed; ``damped`` and ``undamped`` {epsilon,
-        timestep_factor}; ``undamped_steps`` (list), the f at which the undamped pair of equal monomers of
-        `STEP_STUDY_RADIUS` is spun up.
+        material, pairs (number of random radii), ratios (list), seed. Nothing more for pairs under the spin-up that
+        waits; for the others ``damped`` and ``undamped`` {epsilon, timestep_factor}, and ``undamped_steps`` (list), the
+        f at which the undamped pair of equal monomers of `STEP_STUDY_RADIUS` is spun up.
     progress : callable, optional
         Called with a sentence.
 
@@ -60,10 +60,12 @@ def compute(settings, progress=None):
     pairs += [(LARGEST / ratio, LARGEST) for ratio in settings["ratios"]]
     pairs += [(SMALLEST, SMALLEST * ratio) for ratio in settings["ratios"]]
     rows = []
-    for start in ("waiting", "damped", "undamped"):
+    for start in ("damped", "undamped") if "damped" in settings else ("waiting",):
         rows += [one_row(*pair, material, "pairs", start, **settings.get(start, {})) for pair in pairs]
         if progress is not None:
             progress(f"{start}: {len(pairs)} pairs")
+    if "undamped_steps" not in settings:
+        return rows
     pair = (STEP_STUDY_RADIUS, STEP_STUDY_RADIUS)
     epsilon = settings["undamped"]["epsilon"]
     vibrating = vibrating_omega(*pair, material, epsilon)
