@@ -38,10 +38,10 @@ def apart(table):
     pairs = off_the_answer(table)
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Two monomers that are spun up until they part")
     panels = figure.subplots(1, 2, sharey=True)
-    equal = pairs["radius_1"] == pairs["radius_2"]
     for start, (label, colour, marker) in STARTS.items():
         part = pairs[pairs["start"] == start]
-        same, other = part[equal], part[~equal]
+        same = part[part["radius_1"] == part["radius_2"]]
+        other = part.drop(same.index)
         style = dict(color=colour, linestyle="none", marker=marker, markersize=2.8, alpha=0.7)
         panels[0].plot(same["radius_1"] * 1e9, 100 * same["off"], label=label, **style)
         panels[1].plot(other["radius_2"] / other["radius_1"], 100 * other["off"], **style)
@@ -66,21 +66,20 @@ def steps(energy, frames):
     )
     for axes, (table, column, label) in zip(panels, shown, strict=True):
         worst = table[column].abs().groupby([table["type"], table["seed"], table["timestep_factor"]]).max()
+        every = worst.groupby("timestep_factor")
+        f = every.min().index.to_numpy(float)
+        axes.fill_between(f, every.min(), every.max(), color="0.88", linewidth=0, label="all grains")
         for kind in TYPES:
-            grains = worst[kind].unstack("timestep_factor")
-            f = grains.columns.to_numpy(float)
-            axes.fill_between(f, grains.min(), grains.max(), color=TYPE_COLOUR[kind], alpha=0.2, linewidth=0)
-            axes.plot(f, grains.median(), TYPE_MARKER[kind] + "-", color=TYPE_COLOUR[kind], label=kind)
-        middle = worst.groupby("timestep_factor").median()
-        f = middle.index.to_numpy(float)
-        axes.plot(f, 0.15 * middle.iloc[0] * (f / f[0]) ** 2, ":", color="black", label="goes with $f^2$")
+            grains = worst[kind].groupby("timestep_factor").median()
+            axes.plot(f, grains, TYPE_MARKER[kind] + "-", color=TYPE_COLOUR[kind], label=kind)
+        axes.plot(f, 0.4 * every.min().iloc[0] * (f / f[0]) ** 2, ":", color="black", label="goes with $f^2$")
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlabel("step factor $f$")
         axes.set_ylabel(label)
     logarithmic(panels[0].xaxis)
     logarithmic(panels[1].xaxis)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 
@@ -119,26 +118,31 @@ def viscous_time(table):
     """Figure: what a longer viscous time does, by the rate of the spin-up."""
     figure = new_figure(ONE_COLUMN * 1.35, 0.9 * ONE_COLUMN, "Viscous time of 9 ps in place of 5 ps (a-C, 100 nm)")
     waiting, axes = figure.subplots(1, 2, sharey=True, width_ratios=(1, 5))
-    rate = ratios(table[table["study"] == RATE], "omega_mass_75", (9, 5), ["epsilon"])
-    quiet = ratios(table[table["study"] == WAITING], "omega_mass_75", (9, 5), [])
-    for shift, kind in zip((-0.1, 0.1), ("BA", "BAM2"), strict=True):
-        part = rate[rate["type"] == kind]
-        found = [(epsilon, median_of(own["ratio"])) for epsilon, own in part.groupby("epsilon")]
-        style = dict(color=TYPE_COLOUR[kind], marker=TYPE_MARKER[kind], capsize=1.5, elinewidth=0.8)
+    shown = {
+        ("BAM2", "omega_disr"): ("BAM2, peak of the stress", "#0072B2", "^"),
+        ("BAM2", "omega_mass_75"): ("BAM2, a quarter lost", "#56B4E9", "v"),
+        ("BA", "omega_mass_75"): ("BA, a quarter lost", "#D55E00", "o"),
+    }
+    for shift, ((kind, mark), (label, colour, marker)) in zip((-0.2, 0.0, 0.2), shown.items(), strict=True):
+        own = table[table["type"] == kind]
+        rate = ratios(own[own["study"] == RATE], mark, (9, 5), ["epsilon"])
+        quiet = ratios(own[own["study"] == WAITING], mark, (9, 5), [])
+        style = dict(color=colour, marker=marker, capsize=1.5, elinewidth=0.8, linewidth=0.8)
+        found = [(epsilon, median_of(part["ratio"])) for epsilon, part in rate.groupby("epsilon")]
         x, y, error = np.array([(epsilon, m["median"], m["error"]) for epsilon, m in found]).T
-        axes.errorbar(x, 100 * (y - 1), 100 * error, label=kind, **style)
-        m = median_of(quiet.loc[quiet["type"] == kind, "ratio"])
-        waiting.errorbar([shift], [100 * (m["median"] - 1)], [100 * m["error"]], linestyle="none", **style)
+        axes.errorbar(x * (1 + shift / 4), 100 * (y - 1), 100 * error, label=label, **style)
+        m = median_of(quiet["ratio"])
+        waiting.errorbar([shift], [100 * (m["median"] - 1)], [100 * m["error"]], **style)
     for panel in (waiting, axes):
-        panel.axhline(100 * (VISCOUS_EFFECT - 1), color=HIGHLIGHT, linewidth=1.2, label="printed, BAM2")
+        panel.axhline(100 * (VISCOUS_EFFECT[1] - 1), color=HIGHLIGHT, linewidth=1.2, label="printed: BAM2, peak")
         panel.axhline(0.0, color=GREY, linewidth=0.6, zorder=0)
     axes.set_xscale("log")
     logarithmic(axes.xaxis)
     waiting.set_xlim(-0.5, 0.5)
     waiting.set_xticks([0.0], ["waiting"])
     axes.set_xlabel(r"rate $\varepsilon$ of a spin-up that does not wait")
-    waiting.set_ylabel("rise of $\\omega$ at a quarter lost [%]")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    waiting.set_ylabel("rise of $\\omega$ [%]")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 

@@ -23,10 +23,10 @@ WAYS = {
 }
 """Study, start and code -> the word of its slots."""
 SHOWN = {
-    "sudden": "set turning at once",
-    "sudden turning": "the same, LAMMPS\nin a turning frame",
-    "driven": "driven in steps",
-    "elastic": "driven, no limit\nof rolling",
+    "sudden": "at once",
+    "sudden turning": "at once,\nturning\nframe",
+    "driven": "driven",
+    "elastic": "driven,\nrolling\nunlimited",
 }
 assert set(COMPARISONS) == {way[1:] for way in WAYS}
 
@@ -126,7 +126,7 @@ def beside(table):
                     x, part, TYPE_MARKER[kind], color=TYPE_COLOUR[kind], linestyle="none", alpha=0.8,
                     label=kind if place == 0 else None,
                 )  # fmt: skip
-        axes.set_xticks(range(len(SHOWN)), list(SHOWN.values()), fontsize=6.5)
+        axes.set_xticks(range(len(SHOWN)), list(SHOWN.values()))
         axes.tick_params(axis="x", length=0)
         axes.set_title(title)
     panels[0].set_ylabel("$\\omega$ in LAMMPS over $\\omega$ in ratd")
