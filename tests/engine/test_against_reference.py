@@ -1,6 +1,16 @@
-"""Runs of three unequal spheres against the independent slow engine, in the limit of small steps."""
+"""Runs of three unequal spheres against the independent slow engine, in the limit of small steps.
+
+PYTHONPATH=tests python tests/engine/test_against_reference.py docs/validation/data/reference.csv
+
+writes how far apart the two are, which docs/validation.md tells.
+"""
+
+import sys
+from itertools import product
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from ratd.base.materials import Material as Own
@@ -32,9 +42,18 @@ def three(size, speed):
     return radius, x, u, np.random.default_rng(1).normal(size=(3, 3)) * speed / size * 0.5
 
 
-@pytest.mark.parametrize("rate", [0.0, -2e-3 / T0], ids=["open", "box"])
-@pytest.mark.parametrize("name", CASES)
-def test_same_motion_and_same_energies(name, rate):
+BOXES = {"open": 0.0, "box": -2e-3 / T0}
+LIMITS = {"position": 2e-3, "velocity": 1e-2, "spin": 2e-2, "box_work": 1e-3, "dissipated": 5e-3, "stored": 2e-3}
+"""Greatest deviations, see `deviations`."""
+TABLE = Path(__file__).parents[2] / "docs" / "validation" / "data" / "reference.csv"
+
+
+def deviations(name, rate):
+    """How far the two engines are apart at the end: the names of `LIMITS` -> number.
+
+    Positions over the farthest way of a sphere, velocities over the speed of the impact, spins over the greatest one,
+    energies (of the way or mode that differs most) over the kinetic energy at the start and the work of the box.
+    """
     law, theirs, material, size, speed, dt, steps = CASES[name]
     if rate:
         rate *= T0 / (dt * 100)  # the box shrinks to 0.82
@@ -50,16 +69,30 @@ def test_same_motion_and_same_energies(name, rate):
     system = slow["system"]
     assert ours.attrs["steps"] == steps
     assert ours.n_contacts.values[-1] == slow["contacts"][-1]
-    way = np.abs(system.x - x).max()
-    np.testing.assert_allclose(ours.position, system.x, rtol=0, atol=2e-3 * way)
-    np.testing.assert_allclose(ours.velocity, system.u, rtol=0, atol=1e-2 * speed)
-    np.testing.assert_allclose(ours.spin, system.w, rtol=0, atol=2e-2 * np.abs(w).max())
     scale = slow["kinetic"]["translation"][0] + slow["kinetic"]["spin"][0] + abs(slow["work"]["box"][-1])
-    assert ours.box_work.values[-1] == pytest.approx(slow["work"]["box"][-1], abs=1e-3 * scale)
-    for way in ours.way.values:
-        lost = slow["dissipated"][way][-1]
-        assert float(ours.dissipated.sel(way=way)[-1]) == pytest.approx(lost, abs=5e-3 * scale), way
-    for mode in ours.storage.values:
-        held = slow["potential"][mode][-1]
-        assert float(ours.stored.sel(storage=mode)[-1]) == pytest.approx(held, abs=2e-3 * scale), mode
     assert slow["dissipated"]["damping"][-1] > 0.01 * scale or "undamped" in name
+    lost = [float(ours.dissipated.sel(way=way)[-1]) - slow["dissipated"][way][-1] for way in ours.way.values]
+    held = [float(ours.stored.sel(storage=m)[-1]) - slow["potential"][m][-1] for m in ours.storage.values]
+    return {
+        "position": np.abs(ours.position.values - system.x).max() / np.abs(system.x - x).max(),
+        "velocity": np.abs(ours.velocity.values - system.u).max() / speed,
+        "spin": np.abs(ours.spin.values - system.w).max() / np.abs(w).max(),
+        "box_work": abs(float(ours.box_work[-1]) - slow["work"]["box"][-1]) / scale,
+        "dissipated": np.abs(lost).max() / scale,
+        "stored": np.abs(held).max() / scale,
+    }
+
+
+@pytest.mark.parametrize("box", BOXES)
+@pytest.mark.parametrize("name", CASES)
+def test_same_motion_and_same_energies(name, box):
+    found = deviations(name, BOXES[box])
+    assert {key: value for key, value in found.items() if not value < LIMITS[key]} == {}
+    row = pd.read_csv(TABLE).set_index(["law", "box"]).loc[(name, box)]
+    # rounding is another one on other machines, and grows where spheres slide
+    assert row.to_dict() == pytest.approx(found, rel=0.05, abs=1e-6), f"write {TABLE} anew"
+
+
+if __name__ == "__main__":
+    cases = [{"law": name, "box": box} | deviations(name, BOXES[box]) for name, box in product(CASES, BOXES)]
+    pd.DataFrame(cases).to_csv(sys.argv[1], index=False, float_format="%.4g")

@@ -12,7 +12,7 @@ from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.how import FIRST_LOSS
+from ratd.experiments.spin_up.how import FIRST_LOSS, QUASI_STATIC
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
@@ -127,10 +127,13 @@ def spin_each(grain, found, progress=None):
 
 
 def _pace(grain, case):
-    """How fast `spin_up` is to turn the grain; Eq. 24 has the epsilon of the case where the other law reaches it."""
+    """How `spin_up` is to turn the grain; Eq. 24 has the epsilon of the case where the other law reaches it."""
+    if case["law"] == QUASI_STATIC:
+        return {}
+    step = {"timestep_factor": case["timestep_factor"], "damping": case["damping"]}
     if case["law"] == SPIN_UP_LAWS[CONSTANT_EPSILON]:
-        return {"epsilon": case["epsilon"]}
-    return {"angular_acceleration": case["epsilon"] * (FIRST_LOSS * cut_bound(grain)) ** 2}
+        return step | {"epsilon": case["epsilon"]}
+    return step | {"angular_acceleration": case["epsilon"] * (FIRST_LOSS * cut_bound(grain)) ** 2}
 
 
 def spin_one(grain, case, max_steps=None):
@@ -175,8 +178,6 @@ def spin_one(grain, case, max_steps=None):
         run = spin_up(
             changed,
             **_pace(grain, case),
-            timestep_factor=case["timestep_factor"],
-            damping=case["damping"],
             max_steps=max_steps,
         )
     except RuntimeError as error:

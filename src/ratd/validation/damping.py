@@ -2,21 +2,25 @@
 
 The implicit damping is weaker than Eq. 22 for light monomers, the more the longer the step (docs/model/engine.md,
 Damping); the explicit one is not, but lets long steps break down. A grain is spun up with several T_vis by both, with
-shorter and shorter steps; and, as what T_vis does goes with the rate too, at several epsilon.
+shorter and shorter steps; and, as what T_vis does goes with the rate too, at several epsilon. The spin-up that waits,
+the default of `ratd.spin_up`, is the limit of all that; a grain is spun up in that way with every T_vis as well.
 """
 
+import math
 from itertools import product
 
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.base.units import PS
 from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
-from ratd.validation.convergence import COLUMNS, spin_each
+from ratd.experiments.spin_up.how import QUASI_STATIC
+from ratd.validation.convergence import COLUMNS, spin_each, spin_one
 from ratd.validation.tables import table_kind
 
 KIND = table_kind("damping", "Marks of disruption against the viscous time and how finely it is resolved", COLUMNS)
-RESOLUTION, RATE = "T_vis", "epsilon"
-"""Studies, in the column of that name: one epsilon and several steps, or several epsilon."""
+RESOLUTION, RATE, WAITING = "T_vis", "epsilon", "waiting"
+"""Studies, in the column of that name: one epsilon and several steps, several epsilon, or the spin-up that waits, which
+has neither (NaN)."""
 
 
 def compute(settings, progress=None):
@@ -25,8 +29,8 @@ def compute(settings, progress=None):
     Parameters
     ----------
     settings : dict
-        material, type, a_eff [m], seed, ``epsilon`` (a number for the study `RESOLUTION`, a list for `RATE`),
-        ``viscous_time_ps`` (list), ``timestep_factor`` {implicit: list, explicit: list}.
+        material, type, a_eff [m], seed, ``viscous_time_ps`` (list); ``epsilon`` (a number for the study `RESOLUTION`,
+        a list for `RATE`) and ``timestep_factor`` {implicit: list, explicit: list}, neither for the study `WAITING`.
     progress : callable, optional
         Called with a sentence after each run.
 
@@ -36,6 +40,13 @@ def compute(settings, progress=None):
         Rows of `COLUMNS`, see `ratd.validation.convergence.compute`.
     """
     grain = grow(settings["type"], settings["a_eff"], get_material(settings["material"]), settings["seed"])
+    if "epsilon" not in settings:
+        found = [
+            dict(study=WAITING, epsilon=math.nan, timestep_factor=math.nan, damping="implicit", law=QUASI_STATIC,
+                 xi_c=None, viscous_time=time * PS)
+            for time in settings["viscous_time_ps"]
+        ]  # fmt: skip
+        return [spin_one(grain, case) for case in found]
     several = isinstance(settings["epsilon"], list)
     found = [
         dict(

@@ -131,13 +131,17 @@ class Checks:
 
     def _pull_off(self, own):
         shared = {key: own[key] for key in ("pairs", "ratios", "seed", "damped", "undamped", "undamped_steps")}
-        return {material: shared | {"material": material} for material in own["materials"]}
+        pieces = {material: shared | {"material": material} for material in own["materials"]}
+        waiting = {key: own[key] for key in ("pairs", "ratios", "seed")}
+        return pieces | {f"waiting_{material}": waiting | {"material": material} for material in own["materials"]}
 
     def _damping(self, own):
         shared = {key: own[key] for key in ("material", "epsilon", "viscous_time_ps", "timestep_factor")}
         rate = shared | {key: own["rate"][key] for key in ("epsilon", "viscous_time_ps", "timestep_factor")}
         pieces = _each_grain(own["grains"], shared)
-        return pieces | {f"rate_{name}": piece for name, piece in _each_grain(own["grains"], rate).items()}
+        pieces |= {f"rate_{name}": piece for name, piece in _each_grain(own["grains"], rate).items()}
+        waiting = {key: own[key] for key in ("material", "viscous_time_ps")}
+        return pieces | {f"waiting_{name}": piece for name, piece in _each_grain(own["grains"], waiting).items()}
 
     def _literal(self, own):
         shared = {key: own[key] for key in ("material", "part_of_limit", "timestep_factor")}

@@ -11,8 +11,8 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import SemiImplicit, semi_implicit
 
 __all__ = [
-    "DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "STEP", "STRETCH", "TIMESTEP_FACTOR", "UNREST", "How",
-    "how_to_turn",
+    "DRAG", "DRIVES", "EPSILON", "FIRST_LOSS", "PACE", "QUASI_STATIC", "STEP", "STRETCH", "TIMESTEP_FACTOR", "UNREST",
+    "How", "how_to_turn",
 ]  # fmt: skip
 
 DRIVES = tuple(dict.fromkeys((*slow.DRIVES, *fast.DRIVES)))

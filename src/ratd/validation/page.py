@@ -1,0 +1,210 @@
+"""docs/validation.md, its figures and its tables of numbers, drawn from the tables of the checks beside them.
+
+python -m ratd.validation.page collect RESULTS    take the pieces that are there, such as of results/validation/full
+python -m ratd.validation.page redraw             figures, tables and text, in seconds
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.errors import FileError
+from ratd.experiments.collision.tables import collision_table
+from ratd.pictures.style import save
+from ratd.pipeline import io
+from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.documents import command, fill
+from ratd.validation import page_figures, page_lammps, page_values, quasi_static_page
+from ratd.validation.tables import CASE, as_dataset
+
+__all__ = ["collect", "main", "read_data", "redraw", "values"]
+
+DATA = Path("docs/validation/data")
+FIGURES = Path("docs/validation")
+TEMPLATE = Path("docs/templates/validation.md")
+DOCUMENT = Path("docs/validation.md")
+CHECKS = (
+    "pull_off", "lammps", "forces", "frames", "energy_step", "energy", "relaxation", "growth", "theory", "damping",
+    "literal",
+)  # fmt: skip
+"""One file each, with a row a case."""
+MADE = ("settings_hash", "code_hash", "versions")
+"""What a table keeps of each of its pieces."""
+COMPRESSION = "docs/compression/data/sets/*.nc"
+COLLISION = "docs/collision/data/*/*.nc"
+"""Production runs whose balance of energy is told."""
+FROM_PHI = 0.1
+"""A balance of a compression is told from this filling factor on, where the box has done work."""
+
+
+def collect(results, folder="."):
+    """Take the pieces of the checks that a folder of results has, and the balances of compressions and collisions.
+
+    Parameters
+    ----------
+    results : path-like
+        Such as ``results/validation/full``.
+    folder : path-like
+        Where the project is.
+
+    Raises
+    ------
+    FileError
+        If there is no piece.
+    """
+    folder = Path(folder)
+    found = {check: sorted(Path(results, check).glob("*.nc")) for check in CHECKS}
+    if not any(found.values()):
+        raise FileError(f"{results}: holds no piece of a check; `snakemake --cores 2 {results}/energy.csv` makes some")
+    for check, paths in found.items():
+        if paths:
+            kind, target = f"validation_{check}", folder / DATA / f"{check}.nc"
+            io.write(target, merged(target, paths, kind), kind)
+    with atomic(folder / DATA / "balance.csv") as temporary:
+        balance(folder).to_csv(temporary, index=False, float_format="%.4g")
+
+
+def merged(target, paths, kind):
+    """The table of a check with some pieces more, or in place of those of the same names.
+
+    Parameters
+    ----------
+    target : path-like
+        The table as it is, if there is one. It names its pieces in ``pieces``: for each the name, the number of cases,
+        and with which settings, source and versions it was made.
+    paths : list of path-like
+        Files of pieces.
+    kind : str
+        From `ratd.validation.tables.table_kind`.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    parts = {}
+    if Path(target).is_file():
+        old, first = io.read(target, kind), 0
+        for name, cases, made in json.loads(old.attrs["pieces"]):
+            parts[name] = old.isel({CASE: slice(first, first + cases)}), made
+            first += cases
+    for path in paths:
+        piece = io.read(path, kind)
+        parts[Path(path).stem] = piece, {name: str(piece.attrs[name]) for name in MADE}
+    rows = pd.concat([part.to_dataframe() for part, _ in parts.values()]).to_dict("records")
+    pieces = [[name, part.sizes[CASE], made] for name, (part, made) in parts.items()]
+    return as_dataset(rows, kind).assign_attrs(pieces=json.dumps(pieces))
+
+
+def balance(folder):
+    """What the balance of energy lacks at most in production runs with the explicit step.
+
+    Parameters
+    ----------
+    folder : path-like
+        Of the project.
+
+    Returns
+    -------
+    pandas.DataFrame
+        experiment, set, runs, worst: over the work of the box, from `FROM_PHI` on, or over the energy of the impact.
+    """
+    rows = []
+    for path in sorted(Path(folder).glob(COMPRESSION)):
+        table = io.read(path, "compression_set")
+        if not table.attrs["integrator"].startswith("Leapfrog"):
+            continue
+        part = np.abs(table["energy_residual"].values / table["work"].values)[:, table["phi"].values > FROM_PHI]
+        rows.append({"experiment": "compression", "set": path.stem, "runs": len(part), "worst": np.nanmax(part)})
+    collisions = collision_table(
+        path for path in sorted(Path(folder).glob(COLLISION)) if path.parent.name != "pictures"
+    )
+    for friction, part in collisions.groupby("friction"):
+        name = "springs" if friction == "spring" else "collision"
+        rows.append({"experiment": name, "set": friction, "runs": len(part), "worst": part["balance"].max()})
+    return pd.DataFrame(rows)
+
+
+def read_data(folder="."):
+    """The tables behind the page, name of a check -> pandas.DataFrame."""
+    data = Path(folder, DATA)
+    tables = {check: io.read(data / f"{check}.nc", f"validation_{check}").to_dataframe() for check in CHECKS}
+    scheme = Path(folder, quasi_static_page.DATA)
+    return (
+        tables
+        | {name: pd.read_csv(data / f"{name}.csv") for name in ("reference", "balance")}
+        | {name: pd.read_csv(scheme / f"{name}.csv") for name in quasi_static_page.CHECKS}
+    )
+
+
+def values(tables):
+    """Values of the slots, from what `read_data` gives: name of a slot -> number or text."""
+    found = {}
+    for check in (*CHECKS, "reference", "balance"):
+        of = page_lammps.of_lammps if check == "lammps" else getattr(page_values, f"of_{check}")
+        found |= of(tables[check])
+    scheme = quasi_static_page.findings(tables["quasi_static"], tables["remnant"])
+    found |= {f"scheme.{name}": value for name, value in scheme.items()}
+    worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
+    found["scheme.verdict"] = "met" if worst < page_values.SHIFTED else "open"
+    found["scheme.all verdict"] = "met" if scheme["classes"] == scheme["all classes"] else "open"
+    found["scheme.BA large"] = page_values.large_fluffy(tables["quasi_static"])
+    found["scheme.DMT over JKR"] = np.sqrt(4.0 / 3.0)
+    found |= {"limit.near": page_lammps.NEAR, "limit.force": page_lammps.FORCE}
+    return found | page_values.limits()
+
+
+def numbers(tables):
+    """The tables of the page that are too long for it, name -> pandas.DataFrame."""
+    pairs = page_values.off_the_answer(tables["pull_off"])
+    pairs["radii"] = np.where(pairs["radius_1"] == pairs["radius_2"], "equal", "unequal")
+    pairs = pairs.groupby(["material", "start", "radii"])["off"].agg(["size", "median", "min", "max"]).reset_index()
+    damping = tables["damping"]
+    times = pd.concat(
+        page_values.ratios(part, mark, (9, 5), ["damping", "epsilon", "timestep_factor"]).assign(study=study, mark=mark)
+        for study, part in damping.groupby("study")
+        for mark in ("omega_first_loss", "omega_mass_75", "omega_disr")
+    )
+    keys = ["study", "mark", "type", "damping", "epsilon", "timestep_factor"]
+    return {
+        "pull_off": pairs,
+        "lammps": page_lammps.thresholds(tables["lammps"]),
+        "growth": pd.DataFrame(page_values.grown(tables["growth"])),
+        "migration": pd.DataFrame(page_values.migrations(tables["growth"])),
+        "energy": page_values.balances(tables["energy"]),
+        "theory": tables["theory"],
+        "damping": times.groupby(keys, dropna=False)["ratio"].agg(["size", "median", "min", "max"]).reset_index(),
+        "literal": page_values.runs_of_solid_grains(tables["literal"]),
+    }
+
+
+def redraw(folder=".", into=None):
+    """Write the page, its figures and its tables of numbers, into another folder where one is given."""
+    folder = Path(folder)
+    into = folder if into is None else Path(into)
+    tables = read_data(folder)
+    figures = {
+        "pull_off": page_figures.apart(tables["pull_off"]),
+        "lammps": page_lammps.beside(tables["lammps"]),
+        "steps": page_figures.steps(tables["energy_step"], tables["frames"]),
+        "theory": page_figures.bounds(tables["theory"]),
+        "damping": page_figures.viscous_time(tables["damping"]),
+        "literal": page_figures.late_coriolis(tables["literal"]),
+    }
+    for name, figure in figures.items():
+        save(figure, into / FIGURES / f"{name}.png")
+    for name, table in numbers(tables).items():
+        write_text(into / DATA / "tables" / f"{name}.csv", table.to_csv(index=False, float_format="%.5g"))
+    template = (folder / TEMPLATE).read_text(encoding="utf-8")
+    write_text(into / DOCUMENT, fill(template, values(tables), str(TEMPLATE)))
+
+
+def main(words):
+    """The command line; returns the exit code."""
+    return command(words, __doc__, collect, redraw)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,134 @@
+"""What docs/validation.md tells of LAMMPS: slots, table and figure, from the table of that check alone."""
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.statistics import median_of
+from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, styled
+from ratd.pipeline.documents import Measured
+from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, MARKS, TURNING, threshold
+
+__all__ = ["beside", "of_lammps", "thresholds"]
+
+GRAIN = ["material", "type", "a_eff", "seed"]
+FORCE = 1e-9
+"""Difference of the normal forces over F_C."""
+NEAR = 0.15
+"""Part by which a threshold of one code may be off that of the other; neighbouring omega differ by 4 %."""
+WAYS = {
+    ("rotation", "sudden", "LAMMPS"): "sudden",
+    ("rotation", "sudden", TURNING): "sudden turning",
+    ("rotation", "driven", TURNING): "driven",
+    (ELASTIC_ROLLING, "driven", TURNING): "elastic",
+}
+"""Study, start and code -> the word of its slots."""
+SHOWN = {
+    "sudden": "at once",
+    "sudden turning": "at once,\nturning\nframe",
+    "driven": "driven",
+    "elastic": "driven,\nrolling\nunlimited",
+}
+assert set(COMPARISONS) == {way[1:] for way in WAYS}
+
+
+def thresholds(table):
+    """omega at which each grain comes apart in ratd and in LAMMPS, a row a grain, way and mark.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `ratd.validation.lammps`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        way, the columns of a grain, mark, cut_bound, ratd and lammps, the geometric means of the omega between which
+        the grain comes apart [rad/s], NaN where there is no such pair, and ``ratio``, LAMMPS over ratd.
+    """
+    rows = []
+    grains = table[table["study"] != "force"]
+    for key, part in grains.groupby(["study", "path", *GRAIN]):
+        study, path, *grain = key
+        own = part[part["code"] == "ratd"]
+        for code, other in part[part["code"] != "ratd"].groupby("code"):
+            for mark, limit in MARKS.items():
+                ours, theirs = (
+                    float(np.sqrt(np.prod(threshold(each["omega"], each["mass_left"], limit)))) for each in (own, other)
+                )
+                rows.append(
+                    {"way": WAYS[study, path, code], **dict(zip(GRAIN, grain, strict=True)), "mark": mark}
+                    | {"cut_bound": part["cut_bound"].iloc[0], "ratd": ours, "lammps": theirs, "ratio": theirs / ours}
+                )
+    return pd.DataFrame(rows)
+
+
+def of_lammps(table):
+    """Slots of the check against LAMMPS: ``lammps.WAY MARK ...`` for the ways of `WAYS`, and forces.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+
+    Returns
+    -------
+    dict
+    """
+    force = table[table["study"] == "force"]
+    key = ["material", "radius_1", "radius_2"]
+    ours, theirs = (force[force["code"] == code].reset_index(drop=True) for code in ("ratd", "LAMMPS"))
+    both = np.isfinite(ours["normal_force"]) & np.isfinite(theirs["normal_force"])
+    difference = ((ours["normal_force"] - theirs["normal_force"]).abs() / ours["pull_off_force"])[both].max()
+    values = {
+        "lammps.version": force["version"].iloc[0],
+        "lammps.pairs": len(ours.groupby(key)),
+        "lammps.force": difference,
+        "lammps.force verdict": "met" if difference < FORCE else "open",
+    }
+    found = thresholds(table)
+    values["lammps.grains"] = len(found.groupby(GRAIN))
+    monomers = table.loc[table["study"] != "force", "n_monomers"]
+    values["lammps.fewest"], values["lammps.most"] = int(monomers.min()), int(monomers.max())
+    for (way, mark), part in found.groupby(["way", "mark"]):
+        name = f"lammps.{way} {'first' if mark == 'first loss' else 'quarter'}"
+        ratio = part["ratio"].dropna()
+        median = median_of(ratio)
+        within = int((np.abs(ratio - 1.0) <= NEAR).sum())
+        values |= {
+            name: Measured(float(median["median"]), float(median["error"])),
+            f"{name} least": ratio.min(),
+            f"{name} most": ratio.max(),
+            f"{name} known": len(ratio),
+            f"{name} within": within,
+            f"{name} verdict": "met" if within == len(ratio) else "open",
+        }
+    return values
+
+
+@styled
+def beside(table):
+    """Figure: LAMMPS over ratd, a sign a grain, for each way and both marks."""
+    found = thresholds(table)
+    figure = new_figure(
+        TWO_COLUMNS, 0.4 * TWO_COLUMNS, "Angular velocity at which a grain comes apart: LAMMPS over ratd"
+    )
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, (mark, title) in zip(
+        panels, zip(MARKS, ("first loss of mass", "a quarter lost"), strict=True), strict=True
+    ):
+        axes.axhspan(1 - NEAR, 1 + NEAR, color="0.92", zorder=0)
+        axes.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)
+        for place, way in enumerate(SHOWN):
+            own = found[(found["way"] == way) & (found["mark"] == mark)]
+            for shift, kind in zip((-0.22, 0.0, 0.22), TYPE_COLOUR, strict=True):
+                part = np.sort(own.loc[own["type"] == kind, "ratio"].dropna())
+                x = place + shift + 0.05 * np.sin(2.4 * np.arange(len(part)))
+                axes.plot(
+                    x, part, TYPE_MARKER[kind], color=TYPE_COLOUR[kind], linestyle="none", alpha=0.8,
+                    label=kind if place == 0 else None,
+                )  # fmt: skip
+        axes.set_xticks(range(len(SHOWN)), list(SHOWN.values()))
+        axes.tick_params(axis="x", length=0)
+        axes.set_title(title)
+    panels[0].set_ylabel("$\\omega$ in LAMMPS over $\\omega$ in ratd")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure

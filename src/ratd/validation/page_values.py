@@ -1,0 +1,458 @@
+"""Every number that docs/validation.md tells, but for those of LAMMPS, from the tables of the checks.
+
+Each function gives the slots of one check, which begin with its name: numbers, numbers with their standard error, and
+a ``verdict``, met or open.
+"""
+
+import numpy as np
+from scipy.stats import kstest
+
+from ratd.base.statistics import median_of
+from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
+from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
+from ratd.experiments.spin_up.solid import solid_omega
+from ratd.pipeline.documents import Measured
+from ratd.validation.damping import RATE, RESOLUTION, WAITING
+from ratd.validation.growth import EXPECTED_POROSITY, NOT
+from ratd.validation.quasi_static import shifts
+from ratd.validation.quasi_static_page import STEADY
+
+__all__ = [
+    "arrival_values",
+    "exponents",
+    "grown",
+    "large_fluffy",
+    "limits",
+    "measured",
+    "migrations",
+    "of_balance",
+    "of_damping",
+    "of_energy",
+    "of_energy_step",
+    "of_forces",
+    "of_frames",
+    "of_growth",
+    "of_literal",
+    "of_pull_off",
+    "of_reference",
+    "of_relaxation",
+    "of_theory",
+    "off_the_answer",
+    "ratios",
+    "runs_of_solid_grains",
+]
+
+TYPES = ("BA", "BAM1", "BAM2")
+LARGE = 250e-9
+"""Effective radius [m] above which BA grains are the hard case of docs/quasi_static.md."""
+GRAIN = ["material", "type", "a_eff", "seed"]
+PARTED = 0.01
+"""Part by which a pair may part off the exact answer."""
+DERIVATIVE, DRIFT = 1e-6, 1e-10
+"""Deviation of a force from the derivative; change of a momentum, both over their size."""
+APART = 1e-6
+"""Distance of a monomer from itself in the other frame, over the mean radius."""
+REFERENCE = 2e-3
+"""Distance from the spheres of the reference over their way; the same of energies."""
+KEPT = 1e-3
+"""Error of the energy over the kinetic energy, at `TIMESTEP_FACTOR`."""
+CLOSED = {"compression": 5e-3, "collision": 1e-2, "springs": 3e-2, "spin-up": 5e-3}
+"""What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
+SHIFTED = 0.01
+"""What nothing should change by more."""
+SIGMAS = 2.0
+CHANCE = 0.01
+"""Least probability of a Kolmogorov-Smirnov test."""
+SOLID = 0.10
+"""Part by which nine of ten runs of the drive literal may be off the answer for a solid grain."""
+
+
+def measured(found):
+    """A median of `ratd.base.statistics.median_of` with its standard error."""
+    return Measured(float(found["median"]), float(found["error"]))
+
+
+def limits():
+    """What the checks ask for, as slots ``limit.NAME``."""
+    found = {
+        "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
+        "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
+    }  # fmt: skip
+    return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
+
+
+def _verdict(holds):
+    return "met" if holds else "open"
+
+
+def of_reference(table):
+    """Three spheres in this code and in the reference of tests/reference."""
+    values = {f"reference.{name}": table[name].max() for name in ("position", "velocity", "spin")}
+    energy = table[["box_work", "dissipated", "stored"]].max().max()
+    return values | {
+        "reference.cases": len(table),
+        "reference.energy": energy,
+        "reference.verdict": _verdict(values["reference.position"] < REFERENCE and energy < REFERENCE),
+    }
+
+
+def off_the_answer(table):
+    """omega of the pairs over the exact answer, less 1, with the pairs: the columns of the check and ``off``."""
+    pairs = table[table["study"] == "pairs"]
+    exact = pairs["omega_force"].where(pairs["start"] != "undamped", pairs["omega_adiabatic"])
+    return pairs.assign(off=pairs["omega"] / exact - 1.0)
+
+
+def of_pull_off(table):
+    """Pairs of monomers."""
+    pairs = off_the_answer(table)
+    values = {}
+    for start, part in pairs.groupby("start"):
+        values[f"pull_off.{start} worst"] = part["off"].abs().max()
+    # a pair that never parts is NaN, which is not below
+    holds = pairs["off"].abs() < PARTED
+    waiting = pairs[pairs["start"] == "waiting"]
+    values["pull_off.waiting pairs"] = len(waiting)
+    values["pull_off.waiting median"] = waiting["off"].median()
+    values["pull_off.waiting verdict"] = _verdict(holds[waiting.index].all())
+    values["pull_off.not waiting verdict"] = _verdict(holds.drop(waiting.index).all())
+    values["pull_off.waiting worst from 20"] = waiting.loc[waiting["radius_1"] >= 20e-9, "off"].abs().max()
+    undamped = pairs[pairs["start"] == "undamped"]
+    values["pull_off.undamped over force"] = (undamped["omega"] / undamped["omega_force"]).median()
+    steps = table[table["study"] == "step"]
+    off = (steps["omega"] / steps["omega_vibrating"] - 1.0).abs()
+    values["pull_off.short step"] = off[steps["timestep_factor"] <= 0.01].max()
+    values["pull_off.long step"] = off[steps["timestep_factor"] == steps["timestep_factor"].max()].max()
+    return values
+
+
+def of_forces(table):
+    """Forces against the derivatives of the potentials, and the momenta."""
+    contacts = table[table["study"] == "derivative"]
+    worst = contacts[["force", "torque"]].max().max()
+    momenta = table[table["study"] == "momenta"]
+    drift = momenta[["linear", "angular"]].max().max()
+    dissipated = momenta.filter(like="dissipated_")
+    assert (dissipated.groupby([momenta["material"], momenta["type"]]).max() > 0.0).all().all()
+    return {
+        "forces.contacts": len(contacts) // contacts["mode"].nunique(),
+        "forces.worst": worst,
+        "forces.reaction": contacts["reaction"].max(),
+        "forces.verdict": _verdict(worst < DERIVATIVE),
+        "forces.grains": len(momenta.groupby(["material", "type"])),
+        "forces.drift": drift,
+        "forces.momenta verdict": _verdict(drift < DRIFT),
+    }
+
+
+def exponents(table, column, up_to=np.inf):
+    """Powers with which the greatest magnitude of a column of each grain goes with f.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        With ``timestep_factor``, the columns of a grain and ``column``.
+    column : str
+    up_to : float
+        Greatest f that counts.
+
+    Returns
+    -------
+    pandas.Series
+        Exponent of each grain.
+    """
+    worst = table[column].abs().groupby([*(table[name] for name in GRAIN), table["timestep_factor"]]).max()
+    worst = worst.unstack()
+    worst = worst[[f for f in worst.columns if f <= up_to]]
+    slopes = np.polyfit(np.log(worst.columns.to_numpy(float)), np.log(worst.to_numpy()).T, 1)[0]
+    return worst.assign(exponent=slopes)["exponent"]
+
+
+def of_frames(table):
+    """The same grain in two frames."""
+    longest = table[table["timestep_factor"] == table["timestep_factor"].max()]
+    return {
+        "frames.grains": len(table.groupby(GRAIN)),
+        "frames.distance": table["distance"].max(),
+        "frames.moved": longest.groupby(GRAIN)["moved"].max().min(),
+        "frames.exponent": measured(median_of(exponents(table, "distance"))),
+        "frames.verdict": _verdict(table["distance"].max() < APART),
+    }
+
+
+def of_energy_step(table):
+    """Energy of a free elastic grain against the step."""
+    assert (table["dissipated"] == 0.0).all() and (table["contacts_made"] == 0).all()
+    at = table[table["timestep_factor"] == TIMESTEP_FACTOR]
+    worst = at["error"].abs().max()
+    return {
+        "energy_step.grains": len(table.groupby(GRAIN)),
+        "energy_step.worst": worst,
+        "energy_step.exponent": measured(median_of(exponents(table, "error", TIMESTEP_FACTOR))),
+        "energy_step.verdict": _verdict(worst < KEPT),
+    }  # fmt: skip
+
+
+def balances(table):
+    """What the balance of energy lacks before the first loss of mass, a row a grain."""
+    last = table.loc[table.groupby(GRAIN)["omega"].idxmax()]
+    dissipated = last.filter(like="dissipated_").sum(axis=1)
+    gap = last["work"] - last["kinetic"] - last["potential"] - dissipated
+    return last[[*GRAIN, "omega", "work"]].assign(
+        kinetic=last["kinetic"] / last["work"],
+        dissipated=dissipated / last["work"],
+        gap=gap / last["work"],
+        gap_over_dissipated=gap / dissipated,
+    )
+
+
+def of_energy(table):
+    """Balance of energy of a spin-up that does not wait."""
+    last = balances(table)
+    return {
+        "energy.grains": len(last),
+        "energy.worst": last["gap"].abs().max(),
+        "energy.of dissipated": last["gap_over_dissipated"].abs().median(),
+        "energy.dissipated most": last["dissipated"].max(),
+        "energy.verdict": _verdict(last["gap"].abs().max() < CLOSED["spin-up"]),
+    }
+
+
+def of_balance(table):
+    """Balance of energy of the production runs of the compression and the collisions."""
+    values = {}
+    for name, part in table.groupby("experiment"):
+        values[f"balance.{name} runs"] = int(part["runs"].sum())
+        values[f"balance.{name} worst"] = part["worst"].max()
+        values[f"balance.{name} verdict"] = _verdict(part["worst"].max() < CLOSED[name])
+    return values
+
+
+def of_relaxation(table):
+    """Grains that come to rest."""
+    moved = table.loc[table["moved"] > 1e-9, "moved"]
+    whole = (table["rested"] == 1).all() and (table["n_parts"] == 1).all() and (table["n_contacts_lost"] == 0).all()
+    return {
+        "relaxation.grains": len(table),
+        "relaxation.undamped": int((table["viscous_time"] == 0.0).sum()),
+        "relaxation.rested": int((table["rested"] == 1).sum()),
+        "relaxation.not at rest": int((table["moved"] > 1e-9).sum()),
+        "relaxation.made": int(table["n_contacts_made"].sum()),
+        "relaxation.moved": moved.median(),
+        "relaxation.most": moved.max(),
+        "relaxation.verdict": _verdict(whole and moved.max() < SHIFTED),
+    }
+
+
+def grown(table):
+    """Aggregates of equal monomers beside those of the independent generator, a row a type and number.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+
+    Returns
+    -------
+    pandas.DataFrame
+        type, n_monomers, porosity and its standard error, that of the generator, and their difference over both errors.
+    """
+    own = table[(table["study"] == "aggregates") & table["migration"].isin([NOT, "nearest"])]
+    rows = []
+    for (kind, number), printed in EXPECTED_POROSITY.items():
+        part = own.loc[(own["type"] == kind) & (own["n_monomers"] == number), "porosity"]
+        error = part.std() / np.sqrt(len(part))
+        rows.append(
+            dict(
+                type=kind, n_monomers=number, aggregates=len(part), porosity=part.mean(), error=error,
+                independent=printed, sigmas=(part.mean() - printed) / np.hypot(error, 0.01),
+            )
+        )  # fmt: skip
+    return rows
+
+
+def arrival_values(table):
+    """Of single arrivals: name -> values, which should be uniform between 0 and 1."""
+    own = table[table["study"] == "arrivals"]
+    values = {"squared impact parameter": own["impact"]}
+    for name in ("direction", "place"):
+        x, y, z = (own[f"{name}_{axis}"] for axis in "xyz")
+        values |= {f"{name}, z": 0.5 + 0.5 * z, f"{name}, azimuth": 0.5 + np.arctan2(y, x) / (2.0 * np.pi)}
+    return values
+
+
+def migrations(table):
+    """Grains with the radii of the ensemble under both ways to migrate, a row a type, size and way.
+
+    Returns
+    -------
+    list of dict
+        The enclosing radius [nm], its median and where 95 % of the grains lie, and the mean porosity with its error.
+    """
+    own = table[(table["study"] == "grains") & (table["type"] != "BA")]
+    size = (own["a_eff"] * 1e9).round().astype(int)
+    rows = []
+    for (kind, a_eff, way), part in own.groupby([own["type"], size, own["migration"]]):
+        low, middle, high = part["enclosing_radius"].quantile([0.025, 0.5, 0.975]) * 1e9
+        porosity = part["porosity"]
+        rows.append(
+            dict(
+                type=kind, a_eff_nm=a_eff, migration=way, grains=len(part), a_out_nm=middle, a_out_low_nm=low,
+                a_out_high_nm=high, porosity=porosity.mean(), error=porosity.std() / np.sqrt(len(part)),
+            )
+        )  # fmt: skip
+    return rows
+
+
+def of_growth(table):
+    """Aggregates as grown, and the directions of arrivals."""
+    rows = grown(table)
+    worst = max(abs(row["sigmas"]) for row in rows)
+    chances = [kstest(values, "uniform").pvalue for values in arrival_values(table).values()]
+    found = {(row["type"], row["a_eff_nm"], row["migration"]): row["porosity"] for row in migrations(table)}
+    more = [found[kind, size, "nearest"] - found[kind, size, "random"] for kind, size, way in found if way == "nearest"]
+    return {
+        "growth.aggregates": sum(row["aggregates"] for row in rows),
+        "growth.cases": len(rows),
+        "growth.worst": worst,
+        "growth.verdict": _verdict(worst < SIGMAS),
+        "growth.arrivals": int((table["study"] == "arrivals").sum()),
+        "growth.chance": min(chances),
+        "growth.tests": len(chances),
+        "growth.arrivals verdict": _verdict(min(chances) > CHANCE),
+        "growth.nearest least": min(more),
+        "growth.nearest most": max(more),
+    }
+
+
+def of_theory(table):
+    """Whole grains over the bounds that need no simulation."""
+    over = table["omega_first_loss"] / table["firm_bound_at_loss"]
+    values = {
+        "theory.grains": len(table),
+        "theory.greatest": over.max(),
+        "theory.excess": over.max() - 1.0,
+        "theory.above as grown": int((table["omega_first_loss"] > table["firm_bound"]).sum()),
+        "theory.verdict": _verdict((over <= 1.0 + SHIFTED).all()),
+    }
+    for kind, part in table.groupby("type"):
+        values[f"theory.{kind} at loss"] = measured(median_of(over[part.index]))
+        values[f"theory.{kind} strength"] = measured(median_of(part["omega_mass_75"] / part["midplane"]))
+    trees = table["type"] == "BA"
+    values["theory.trees"] = int(trees.sum())
+    values["theory.trees on it"] = int((np.abs(over[trees] - 1.0) < SHIFTED).sum())
+    return values
+
+
+def large_fluffy(table):
+    """How far single BA grains of 300 nm and above are off when one number of the scheme is changed.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `ratd.validation.quasi_static`.
+
+    Returns
+    -------
+    float
+        Where 68 % of the grains end, over 1, of the number that does most: of the loss of a quarter.
+    """
+    large = table[(table["type"] == "BA") & (table["a_eff"] > LARGE)]
+    found = shifts(large, marks=("omega_mass_75",))
+    found = found[[pair in STEADY for pair in zip(found["vary"], found["value"], strict=True)]]
+    return float(np.maximum(1.0 - found["low"], found["high"] - 1.0).max())
+
+
+def ratios(table, mark, times, by):
+    """A mark at one viscous time over that of the same grain at another.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Rows of one study of the check of the damping.
+    mark : str
+    times : tuple of float
+        The two viscous times [ps].
+    by : list of str
+        What else tells one run of a grain from another.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The columns of a grain, those of `by`, and ``ratio``.
+    """
+    time = (table["viscous_time"] * 1e12).round(6)
+    first, second = (table.loc[time == each, [*GRAIN, *by, mark]] for each in times)
+    pairs = first.merge(second, on=[*GRAIN, *by], suffixes=("", "_other"))
+    return pairs.assign(ratio=pairs[mark] / pairs[f"{mark}_other"])
+
+
+def of_damping(table):
+    """What the viscous time does."""
+    waiting = table[table["study"] == WAITING]
+    marks = ("omega_first_loss", "omega_mass_75", "omega_disr")
+    worst = max(abs(median_of(ratios(waiting, mark, (9, 1), [])["ratio"])["median"] - 1.0) for mark in marks)
+    values = {"damping.waiting worst": worst, "damping.verdict": _verdict(worst < SHIFTED)}
+    values["damping.printed"] = VISCOUS_EFFECT[1]
+    values["damping.grains"] = len(waiting.groupby(GRAIN))
+    dense = table[table["type"] == "BAM2"]
+    rate = ratios(dense[dense["study"] == RATE], "omega_disr", (9, 5), ["epsilon"])
+    for epsilon in (rate["epsilon"].min(), rate["epsilon"].max()):
+        found = median_of(rate.loc[rate["epsilon"] == epsilon, "ratio"])
+        values[f"damping.BAM2 disr {epsilon:g}"] = measured(found)
+    resolved = dense[(dense["study"] == RESOLUTION) & np.isclose(dense["viscous_time"], 5e-12, atol=0.0)]
+    explicit = resolved[resolved["damping"] == "explicit"]
+    finest = explicit[explicit["timestep_factor"] == explicit["timestep_factor"].min()]
+    own = resolved[(resolved["damping"] == "implicit") & (resolved["timestep_factor"] == TIMESTEP_FACTOR)]
+    both = own.merge(finest, on=GRAIN, suffixes=("", "_finest"))
+    values["damping.BAM2 implicit"] = measured(median_of(both["omega_mass_75"] / both["omega_mass_75_finest"]))
+    return values
+
+
+def runs_of_solid_grains(table):
+    """Runs of the drive literal with the late Coriolis force beside what a solid grain gives.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Those of `table` in which a solid grain is turned backwards, with ``known``, the omega of the first loss in the
+        consistent model, ``solid``, that of a solid grain under the printed equations, and ``q``,
+        (d omega/dt / dt)^(1/3).
+    """
+    own = table.loc[table["drive"] == "prescribed", [*GRAIN, "omega_first_loss"]]
+    late = table[(table["drive"] == "literal") & (table["coriolis"] == "explicit")]
+    runs = late.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
+    columns = runs[["known", "spin_share", "angular_acceleration", "timestep"]]
+    found = [solid_omega(*row) for row in columns.itertuples(index=False)]
+    runs = runs.assign(
+        solid=[omega for omega, _ in found],
+        backwards=[backwards for _, backwards in found],
+        q=(runs["angular_acceleration"] / runs["timestep"]) ** (1 / 3),
+    )
+    return runs[runs["backwards"] & np.isfinite(runs["omega_first_loss"])]
+
+
+def of_literal(table):
+    """The drive with the printed terms of the frame."""
+    runs = runs_of_solid_grains(table)
+    over = runs["omega_first_loss"] / runs["solid"]
+    most = float((over - 1.0).abs().quantile(0.9))
+    exact = table[(table["drive"] == "literal") & (table["coriolis"] == "exact")]
+    own = table.loc[table["drive"] == "prescribed", [*GRAIN, "omega_first_loss"]]
+    exact = exact.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
+    exact = exact[np.isfinite(exact["omega_first_loss"])]
+    values = {
+        "literal.runs": len(runs),
+        "literal.grains": len(runs.groupby(GRAIN)),
+        "literal.solid": measured(median_of(over, runs.groupby(GRAIN).ngroup())),
+        "literal.nine of ten": most,
+        "literal.all": (over - 1.0).abs().max(),
+        "literal.verdict": _verdict(most < SOLID),
+        "literal.higher": measured(
+            median_of(runs["omega_first_loss"] / runs["known"], runs.groupby(GRAIN).ngroup())
+        ),
+        "literal.highest": (runs["omega_first_loss"] / runs["known"]).max(),
+    }  # fmt: skip
+    for kind, part in exact.groupby("type"):
+        turns = median_of(part["turned"] / part["known"], part.groupby(GRAIN).ngroup())
+        values[f"literal.{kind} turns"] = measured(turns)
+    return values
