@@ -92,6 +92,19 @@ def test_rows_of_another_spin_up_are_refused(done):
         study.tasks(other, done)
 
 
+def test_rows_are_of_the_law_that_the_config_names(done, tmp_path):
+    other = plan(tmp_path, types=["BAM2"], seeds={"first": 0, "number": 1})
+    other.config["run"]["law"] = {"normal_force": "DMT"}
+    assert queue.work(study.tasks(other, tmp_path), say=lambda text: None) == 0
+    (row,) = rows(tmp_path / "prescribed" / "q-S_BAM2.nc")
+    (own, _) = rows(done / "prescribed" / "q-S_BAM2.nc")
+    assert row.attrs["seed"] == own.attrs["seed"] and row.attrs["initial_mass"] == own.attrs["initial_mass"]
+    # the greatest pull is 4/3 of that of JKR
+    assert 1.05 < row["omega_first_loss"].item() / own["omega_first_loss"].item() < 1.25
+    with pytest.raises(InputError, match="holds rows with other settings"):
+        study.tasks(other, done)
+
+
 def test_the_config_of_the_study_is_the_whole_paper(tmp_path):
     wanted = study.tasks(load(*study.CONFIG), tmp_path)
     drives = np.array([task.table.path.parent.name for task in wanted])

@@ -21,8 +21,7 @@ from ratd.experiments.spin_up import plan as plans
 from ratd.experiments.spin_up.fragmentation import fragmentation
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.marks import before_marks, disruption
-from ratd.experiments.spin_up.run import spin_up
-from ratd.experiments.spin_up.spin import arguments
+from ratd.experiments.spin_up.spin import arguments, turn
 from ratd.pipeline.provenance import settings_hash, source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 
@@ -58,9 +57,9 @@ def tasks(plan, data):
         wanted = [(seed, cell) for cell in plan.cells_of(drive) for seed in plan.seeds_of(cell, drive)]
         for seed, cell in sorted(wanted, key=lambda pair: pair[0]):
             growth = plan.grow(*cell)
-            turn = arguments(plan.spin_up(drive, *cell, f"{seed}-{seed}"))
-            checkpoint = checkpoints / f"{settings_hash({'growth': growth, 'turn': turn})}_{seed}"
-            make = partial(spun_up, growth, turn, seed, checkpoint=checkpoint, source=source)
+            how = arguments(plan.spin_up(drive, *cell, f"{seed}-{seed}"))
+            checkpoint = checkpoints / f"{settings_hash({'growth': growth, 'turn': how})}_{seed}"
+            make = partial(spun_up, growth, how, seed, checkpoint=checkpoint, source=source)
             found.append(Task(tables[cell[:2]], key(float(cell[2]) * NM, seed), make))
     return found
 
@@ -73,15 +72,15 @@ def _table(plan, data, drive, material, kind):
     return Table(path, "spun_up", _KEY, plan.materials[material], settings)
 
 
-def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
+def spun_up(growth, how, seed, *, checkpoint=None, source=""):
     """One grain, grown and spun up, as a row of a table.
 
     Parameters
     ----------
     growth : dict
         As `ratd.experiments.spin_up.grow.grown` takes it.
-    turn : dict
-        Arguments of `ratd.spin_up`.
+    how : dict
+        As `ratd.experiments.spin_up.spin.turn` takes it.
     seed : int
     checkpoint : path-like, optional
         Of a long run; removed when it is finished.
@@ -94,7 +93,7 @@ def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
         Of the kind spun_up.
     sentence : str
     """
-    run = spin_up(grown(growth, seed), **turn, checkpoint=checkpoint)
+    run = turn(grown(growth, seed), how, checkpoint=checkpoint)
     row = disruption(run)
     for name, value in (before_marks(run, row) | {"source": source}).items():
         row[name] = value
@@ -106,7 +105,7 @@ def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
     if checkpoint is not None:
         Path(checkpoint).unlink(missing_ok=True)
     return row, (
-        f"{turn['drive']} {run.attrs['material']} {run.attrs['type']} {run.attrs['a_eff'] / NM:.0f} nm seed {seed}: "
+        f"{how['drive']} {run.attrs['material']} {run.attrs['type']} {run.attrs['a_eff'] / NM:.0f} nm seed {seed}: "
         f"omega_disr {row['omega_disr'].item():.3g} rad/s, {run.attrs['steps']} steps"
     )
 
