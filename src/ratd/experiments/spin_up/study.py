@@ -1,15 +1,16 @@
-"""A queue of spin-ups: the ensemble of the paper, grain by grain, which may be stopped at any time.
+"""A queue of spin-ups: the ensemble of the paper, grain by grain, which may be stopped at any time, and other studies.
 
     python -m ratd.experiments.spin_up.study --processes 2             # go on where it was, until all is done
     python -m ratd.experiments.spin_up.study --processes 2 --minutes 30
     python -m ratd.experiments.spin_up.study --list                    # what there is and what is left
+    python -m ratd.experiments.spin_up.study --study dmt               # another study than the ensemble
 
-What there is to do stands in config/spin_up_study.yaml, which stands over config/spin_up.yaml. One seed of all
-materials, types and sizes comes before the next, so that what is there is an ensemble at any time, a smaller one. Each
-grain becomes a row of a small table in docs/reproduction/data/spun_up, a file a drive, material and type: its marks of
-disruption, what it was just before, and the fragments that left. A row that is there is never computed again, also not
-with other source: it says itself which source it is of. docs/quasi_static.md tells of this ensemble: after more rows
-`python -m ratd.validation.quasi_static_page redraw` writes it anew.
+What there is to do stands in config/studies/NAME.yaml, which stands over config/spin_up.yaml; the ensemble is spun_up.
+One seed of all materials, types and sizes comes before the next, so that what is there is an ensemble at any time, a
+smaller one. Each grain becomes a row of a small table in docs/reproduction/data/NAME, a file a drive, material and
+type: its marks of disruption, what it was just before, and the fragments that left. A row that is there is never
+computed again, also not with other source: it says itself which source it is of. docs/quasi_static.md tells of the
+ensemble: after more rows `python -m ratd.validation.quasi_static_page redraw` writes it anew.
 """
 
 import sys
@@ -25,10 +26,11 @@ from ratd.experiments.spin_up.spin import arguments, turn
 from ratd.pipeline.provenance import settings_hash, source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 
-__all__ = ["CONFIG", "DATA", "main", "tasks"]
+__all__ = ["CONFIG", "DATA", "ENSEMBLE", "main", "tasks"]
 
-CONFIG = ("config/config.yaml", "config/spin_up.yaml", "config/spin_up_study.yaml")
-DATA = "docs/reproduction/data/spun_up"
+ENSEMBLE = "spun_up"
+CONFIG = ("config/config.yaml", "config/spin_up.yaml", "config/studies/{study}.yaml")
+DATA = "docs/reproduction/data/{study}"
 _KEY = ("a_eff", "seed")
 
 
@@ -113,8 +115,9 @@ def spun_up(growth, how, seed, *, checkpoint=None, source=""):
 def main(words=None):
     """The command; returns the exit status, see `ratd.pipeline.queue.command`."""
     return command(
-        words, module=sys.modules[__name__], what="grains", config=CONFIG, data=DATA, load=plans.load, tasks=tasks
-    )
+        words, module=sys.modules[__name__], what="grains", config=CONFIG, data=DATA, load=plans.load, tasks=tasks,
+        study=ENSEMBLE,
+    )  # fmt: skip
 
 
 if __name__ == "__main__":
