@@ -48,6 +48,15 @@ def test_two_monomers_part_where_they_must(radii, drive):
     assert float(run.omega[-1]) == pytest.approx(parting_omega(*radii), rel=3e-3)
 
 
+@pytest.mark.parametrize("radii", [(30e-9, 30e-9), (12e-9, 60e-9)])
+def test_two_monomers_part_at_the_pull_off_force_of_their_law(radii):
+    """That of DMT is 4/3 of that of JKR."""
+    run = spin_up(pair(*radii), law=jkr(normal_force="DMT"))
+    assert run.attrs["end_reason"] == "one contact left" and run.n_contacts[-1] == 0
+    assert np.isfinite(run.total_stress).all()
+    assert float(run.omega[-1]) == pytest.approx(math.sqrt(4 / 3) * parting_omega(*radii), rel=5e-3)
+
+
 @pytest.fixture(scope="module")
 def grain():
     return ratd.grow("BAM2", 100e-9, "q-S", 1)

@@ -17,7 +17,7 @@ from ratd.base.materials import Material as Own
 from ratd.experiments.evolve import evolve
 from ratd.geometry.box import periodic
 from ratd.laws import dmt, jkr
-from reference.contact import DMT, ICE, JKR, SILICA, Material
+from reference.contact import DMT, ICE, JKR, SILICA, JKRWithDMT, Material
 from reference.system import Cube, run
 from systems import unit
 
@@ -26,6 +26,7 @@ SOFT = Material(*ICE[:5], 0.5e-12)
 CASES = {  # laws, material, size, speed, step, steps
     "jkr": (jkr(), JKR(), SOFT, 1e-7, 10.0, 0.01 * T0, 1000),
     "jkr undamped": (jkr(damping="none"), JKR("none"), ICE, 1e-7, 10.0, 0.01 * T0, 1000),
+    "jkr, DMT normal force": (jkr(normal_force="DMT"), JKRWithDMT(), SOFT, 1e-7, 10.0, 0.005 * T0, 2000),
     "dmt": (dmt(friction="none"), DMT(0.5e-9, "none"), SILICA, 5e-7, 1.0, 10e-12, 1000),
     "dmt velocity": (dmt(friction="velocity"), DMT(0.5e-9, "velocity"), SILICA, 5e-7, 1.0, 10e-12, 1000),
     "dmt spring": (dmt(friction="spring"), DMT(0.5e-9, "spring"), SILICA, 5e-7, 1.0, 10e-12, 1000),
@@ -56,7 +57,7 @@ def deviations(name, rate):
     """
     law, theirs, material, size, speed, dt, steps = CASES[name]
     if rate:
-        rate *= T0 / (dt * 100)  # the box shrinks to 0.82
+        rate *= T0 / (dt * steps / 10)  # the box shrinks to 0.82
     radius, x, u, w = three(size, speed)
     length = 20 * size
     slow = run(

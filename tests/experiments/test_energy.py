@@ -22,6 +22,7 @@ CASES = {  # law, options, greatest residual over the kinetic energy at the star
     "jkr": (jkr(), {}, 2e-3),
     "jkr constant": (jkr(damping="constant"), {}, 2e-3),
     "jkr none": (jkr(damping="none"), {}, 2e-3),
+    "jkr, DMT normal force": (jkr(normal_force="DMT"), {}, 2e-3),
     "dmt velocity": (dmt(friction="velocity"), {}, 5e-3),
     "dmt none": (dmt(friction="none"), {}, 5e-3),
     # Springs that follow the contact radius are not exactly conservative. Measured: 0.9 % and, hardly damped, 0.6 %.

@@ -24,6 +24,7 @@ JKR = {
     "constant": (jkr(damping="constant", constant_damping=0.3), reference.JKR("constant", 0.3)),
     "none": (jkr(damping="none"), reference.JKR("none")),
     "no friction": (jkr(friction="none"), reference.JKR(friction=False)),
+    "DMT normal force": (jkr(normal_force="DMT"), reference.JKRWithDMT()),
 }
 DMT = {friction: (dmt(friction=friction), reference.DMT(0.5e-9, friction)) for friction in dmt_fields.FRICTIONS}
 
@@ -116,7 +117,10 @@ def test_forces_are_derivatives_of_the_potential(name, radii):
 
     DMT: not along the normal, since its springs follow the contact radius without a force that pays for it; that
     direction without friction."""
-    laws = {"jkr": [jkr(damping="none")], "dmt": [dmt(viscous_time=0.0, friction=f) for f in ("spring", "none")]}
+    laws = {
+        "jkr": [jkr(damping="none"), jkr(damping="none", normal_force="DMT")],
+        "dmt": [dmt(viscous_time=0.0, friction=f) for f in ("spring", "none")],
+    }
     for law in laws[name]:
         state, pair, _, _ = strained(law, radii, 0.5, still=True)
         force, torque = forces(state, law, BOX)

@@ -168,6 +168,23 @@ class JKR:
         return lost
 
 
+class JKRWithDMT(JKR):
+    """The same with the normal force of DMT, in SI units: K delta^1.5 - 4 pi gamma R, where r^2 = R delta."""
+
+    def ends(self, pair, delta):
+        return delta < 0.0
+
+    def x(self, pair, delta):
+        return sqrt(pair.R * max(delta, 0.0)) / pair.r0
+
+    def normal(self, pair, delta):
+        return pair.K * max(delta, 0.0) ** 1.5 - pair.f_adh
+
+    def normal_potential(self, pair, delta):
+        delta = max(delta, 0.0)
+        return 2 / 5 * pair.K * delta**2.5 - pair.f_adh * delta
+
+
 class DMT:
     """viscous_time: A of collision.md, by default the material's. friction: 'none', 'velocity', 'spring'.
 

@@ -13,7 +13,8 @@ def dmt(
 ) -> Any: ...
 def jkr(
     *,
-    damping: Literal["viscoelastic", "constant"] = "viscoelastic",
+    normal_force: Literal["JKR", "DMT"] = "JKR",
+    damping: Literal["viscoelastic", "constant", "none"] = "viscoelastic",
     constant_damping: float = 0.01,
     friction: str = "springs",
     sliding_stiffness: float = 1.0,

@@ -1,6 +1,9 @@
 """Normal contact of two adhesive elastic spheres (Derjaguin, Muller & Toporov 1975), as formulae.
 
 The force is K delta^(3/2) - 4 pi gamma R, at an overlap delta of at least 0 (Umstaetter & Urbassek 2020, A&A 633, A24).
+
+The functions `dmt_...` give the same in the units of the law of Johnson, Kendall & Roberts, r0, delta_0 and F_C: with
+r^2 = R delta the compression is delta/delta_0 = 3 x^2 = 3 s^4, where x = r/r0 and s = sqrt(x).
 """
 
 import math
@@ -36,3 +39,39 @@ def breaking_energy(adhesion_force, equilibrium_overlap):
 def vibration_period(reduced_mass, hertz_stiffness, equilibrium_overlap):
     """Period [s] of small undamped vibrations about delta_eq: 2 pi sqrt(m_red/(3/2 K sqrt(delta_eq)))."""
     return 2.0 * math.pi * math.sqrt(reduced_mass / (1.5 * hertz_stiffness * math.sqrt(equilibrium_overlap)))
+
+
+@jit(forceinline=True)
+def dmt_state(compression):
+    """s = sqrt(r/r0) of a contact from its compression delta/delta_0 of at least 0: (delta/(3 delta_0))^(1/4)."""
+    return math.sqrt(math.sqrt(compression * (1.0 / 3.0)))
+
+
+@jit(forceinline=True)
+def dmt_force(s, pull_off_force):
+    """Normal force [N] along n_c, positive when it pushes the spheres apart: 4 F_C (x^3 - 1/3).
+
+    Parameters
+    ----------
+    s : float
+        sqrt(r/r0).
+    pull_off_force : float
+        F_C = 3 pi gamma R [N], that of Johnson, Kendall & Roberts: this law holds 4/3 of it, at s = 0.
+    """
+    s3 = s * s * s
+    return 4.0 * pull_off_force * (s3 * s3 - 1.0 / 3.0)
+
+
+@jit(forceinline=True)
+def dmt_potential(s, pull_off_force, equilibrium_compression):
+    """Potential energy [J] of the normal force, zero for separated spheres: 4 F_C delta_0 (6/5 x^5 - x^2).
+
+    Parameters
+    ----------
+    s : float
+        sqrt(r/r0).
+    pull_off_force, equilibrium_compression : float
+        F_C [N] and delta_0 [m] of Johnson, Kendall & Roberts.
+    """
+    x = s * s
+    return 4.0 * pull_off_force * equilibrium_compression * x * x * (1.2 * x * x * x - 1.0)

@@ -1,9 +1,10 @@
 """The law of Johnson, Kendall & Roberts with friction: springs that slide, roll and twist (Dominik & Nuebold 2002).
 
 The formulae of the normal force stand in `ratd.laws.johnson_kendall_roberts`, those of the springs and their limits in
-displacement in `ratd.laws.tangential`. Here they make a law for the time loop. A block of contacts goes through short
-loops on whole vector registers, so that the processor works on several rounds at once; cutting back to the limits is
-left out for blocks without a contact beyond them.
+displacement in `ratd.laws.tangential`. Here they make a law for the time loop. The normal force alone may be that of
+Derjaguin, Muller & Toporov instead, which tells what of an aggregate's strength hangs on it. A block of contacts goes
+through short loops on whole vector registers, so that the processor works on several rounds at once; cutting back to
+the limits is left out for blocks without a contact beyond them.
 """
 
 from typing import NamedTuple
@@ -24,30 +25,18 @@ from ratd.laws.contact_fields import (
     A_I, A_J, COMMON, DAMPING_RATE, DVX, DVY, DVZ, DX, DY, DZ, E_DAMP, E_ROLL, E_SLIDE, E_TWIST, FX, FY, FZ, NCX,
     NCY, NCZ, NORMAL, STEP, SX, SY, SZ, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
 )  # fmt: skip
+from ratd.laws.derjaguin_muller_toporov import dmt_force, dmt_potential, dmt_state
 from ratd.laws.johnson_kendall_roberts import (
-    COMPRESSION_END,
-    S_TOUCH,
-    contact_state,
-    contact_time,
-    dissipation_time,
-    normal_force,
-    normal_potential,
+    COMPRESSION_END, S_END, S_TOUCH, contact_state, contact_time, dissipation_time, normal_force, normal_potential,
     viscoelastic_damping,
-)
+)  # fmt: skip
 from ratd.laws.tangential import (
-    TWISTING_LIMIT,
-    excess_fraction,
-    nearly_unit,
-    roll_back,
-    rolling_stiffness,
-    rotate_pointer,
-    slide_back,
-    sliding_displacement,
-    sliding_limit,
-    sliding_stiffness,
-    twisting_stiffness,
-)
+    TWISTING_LIMIT, excess_fraction, nearly_unit, roll_back, rolling_stiffness, rotate_pointer, slide_back,
+    sliding_displacement, sliding_limit, sliding_stiffness, twisting_stiffness,
+)  # fmt: skip
 
+NORMAL_FORCES = ("JKR", "DMT")
+JKR_FORCE, DMT_FORCE = range(len(NORMAL_FORCES))
 DAMPINGS = ("viscoelastic", "constant", "none")
 VISCOELASTIC, CONSTANT, NO_DAMPING = range(len(DAMPINGS))
 FRICTIONS = ("springs", "none")
@@ -57,7 +46,7 @@ N_OWN = 20
     NIX, NIY, NIZ, NJX, NJY, NJZ,  # contact pointers in monomers i and j
     PHI,  # twisting angle [rad]
     S,  # sqrt(r/r0)
-    COMPRESSION,  # delta/delta_0
+    COMPRESSION,  # delta/delta_0, with delta_0 of JKR
     IMPULSE,  # of the damping in the last kick [N s]
     # constants of the contact
     INV_SUM, INV_DELTA0, PULL_OFF, K_SLIDE, INV_ZETA2, K_ROLL, INV_XI2, K_TWIST, DAMPING, RADIUS_0,
@@ -65,11 +54,11 @@ N_OWN = 20
 
 
 @jit(forceinline=True)
-def _direct_and_twist(contact, scratch, start, count, dt_drift):
+def _direct_and_twist(contact, scratch, start, count, dt_drift, end):
     """Directions, compressions and twisting angles after the last move.
 
     Leaves 1/|X_i - X_j| in `scratch` at FY and the rate at which the monomers recede at FX. Returns the number of
-    contacts beyond the end of the branch.
+    contacts beyond the end of the branch, at the compression `end`.
     """
     ended = 0
     for lane in range(count):
@@ -103,30 +92,45 @@ def _direct_and_twist(contact, scratch, start, count, dt_drift):
 
         compression = (contact[A_I + k] + contact[A_J + k] - square * inv) * contact[INV_DELTA0 + k]
         contact[COMPRESSION + k] = compression
-        ended += compression < COMPRESSION_END
+        ended += compression < end
     return ended
 
 
 @jit(forceinline=True)
 def _push_and_damp(contact, scratch, start, count, dt, constant):
-    """Normal forces with damping, left in `scratch` at FX."""
+    """Normal forces of JKR with damping, left in `scratch` at FX."""
     for lane in range(count):
         q = np.uint64(lane)
         k = start + q
         # beyond the end of the branch there is no root: Newton's steps would run away
         s = contact_state(max(contact[COMPRESSION + k], COMPRESSION_END), contact[S + k])
-        normal = normal_force(s, contact[PULL_OFF + k])
-        contact[S + k] = s
-        contact[NORMAL + k] = normal
-        x = 1.0 if constant else s * s
-        receding = scratch[FX + q]
-        damping = contact[DAMPING + k] * x * reciprocal(1.0 + dt * x * contact[DAMPING_RATE + k])
-        drag = damping * receding
-        # The work of the damping over the last kick and this one, each at its mean velocity: exact for leapfrog.
-        impulse = dt * drag
-        contact[E_DAMP + k] += 0.5 * (contact[IMPULSE + k] + impulse) * receding
-        contact[IMPULSE + k] = impulse
-        scratch[FX + q] = normal - drag
+        _damp(contact, scratch, k, q, s, normal_force(s, contact[PULL_OFF + k]), dt, constant)
+
+
+@jit(forceinline=True)
+def _push_and_damp_dmt(contact, scratch, start, count, dt, constant):
+    """Normal forces of DMT with damping, left in `scratch` at FX."""
+    for lane in range(count):
+        q = np.uint64(lane)
+        k = start + q
+        s = dmt_state(max(contact[COMPRESSION + k], 0.0))
+        _damp(contact, scratch, k, q, s, dmt_force(s, contact[PULL_OFF + k]), dt, constant)
+
+
+@jit(forceinline=True)
+def _damp(contact, scratch, k, q, s, normal, dt, constant):
+    """State and normal force of one contact, kept in it, and the force with damping, left in `scratch` at FX."""
+    contact[S + k] = s
+    contact[NORMAL + k] = normal
+    x = 1.0 if constant else s * s
+    receding = scratch[FX + q]
+    damping = contact[DAMPING + k] * x * reciprocal(1.0 + dt * x * contact[DAMPING_RATE + k])
+    drag = damping * receding
+    # The work of the damping over the last kick and this one, each at its mean velocity: exact for leapfrog.
+    impulse = dt * drag
+    contact[E_DAMP + k] += 0.5 * (contact[IMPULSE + k] + impulse) * receding
+    contact[IMPULSE + k] = impulse
+    scratch[FX + q] = normal - drag
 
 
 @jit(forceinline=True)
@@ -284,6 +288,8 @@ class JKR(NamedTuple):
 
     Attributes
     ----------
+    normal_force : int
+        `JKR_FORCE` or `DMT_FORCE`.
     damping : int
         `VISCOELASTIC` (Eq. 22: proportional to the contact radius), `CONSTANT` or `NO_DAMPING`.
     constant_damping : float
@@ -294,6 +300,7 @@ class JKR(NamedTuple):
         Factors of k_s, zeta_c and k_t, 1 for the model.
     """
 
+    normal_force: int
     damping: int
     constant_damping: float
     friction: bool
@@ -343,14 +350,17 @@ class JKR(NamedTuple):
         compression = (a_i + a_j - distance) / delta0
         s = S_TOUCH
         radiated = 0.0
-        if at_rest:
+        if self.normal_force == DMT_FORCE:
+            # there is no neck that would jump
+            s = dmt_state(max(compression, 0.0))
+        elif at_rest:
             for _ in range(40):
                 s = contact_state(compression, s)
         else:
             radiated = -normal_potential(S_TOUCH, f_c, delta0)
         contact[at + S] = s
         contact[at + COMPRESSION] = compression
-        contact[at + NORMAL] = normal_force(s, f_c)
+        contact[at + NORMAL] = dmt_force(s, f_c) if self.normal_force == DMT_FORCE else normal_force(s, f_c)
 
         # The forces of the next step turn the pointers by the last move; they are turned back by as much here, so that
         # they then point exactly at the other monomer.
@@ -366,8 +376,12 @@ class JKR(NamedTuple):
         return radiated
 
     def forces(self, contact, scratch, start, count, dt_drift, dt):
-        ended = _direct_and_twist(contact, scratch, start, count, dt_drift)
-        _push_and_damp(contact, scratch, start, count, dt, self.damping == CONSTANT)
+        ended = _direct_and_twist(contact, scratch, start, count, dt_drift, end_of(self.normal_force))
+        # chosen here, so that neither loop asks
+        if self.normal_force == DMT_FORCE:
+            _push_and_damp_dmt(contact, scratch, start, count, dt, self.damping == CONSTANT)
+        else:
+            _push_and_damp(contact, scratch, start, count, dt, self.damping == CONSTANT)
         _turn(contact, scratch, start, count, dt_drift)
         if _displace(contact, scratch, start, count) > 0:
             _slip(contact, scratch, start, count)
@@ -375,7 +389,7 @@ class JKR(NamedTuple):
         return ended
 
     def ended(self, contact, at):
-        return contact[at + COMPRESSION] < COMPRESSION_END
+        return contact[at + COMPRESSION] < end_of(self.normal_force)
 
     def energies(self, contact, at):
         nix, niy, niz = contact[at + NIX], contact[at + NIY], contact[at + NIZ]
@@ -385,8 +399,9 @@ class JKR(NamedTuple):
             contact[at + NCX], contact[at + NCY], contact[at + NCZ],
         )  # fmt: skip
         rolled = (nix + njx) ** 2 + (niy + njy) ** 2 + (niz + njz) ** 2
+        s, f_c, delta0 = contact[at + S], contact[at + PULL_OFF], 1.0 / contact[at + INV_DELTA0]
         return (
-            normal_potential(contact[at + S], contact[at + PULL_OFF], 1.0 / contact[at + INV_DELTA0]),
+            dmt_potential(s, f_c, delta0) if self.normal_force == DMT_FORCE else normal_potential(s, f_c, delta0),
             0.5 * contact[at + K_SLIDE] * (zx * zx + zy * zy + zz * zz),
             0.5 * contact[at + K_ROLL] * rolled,
             0.5 * contact[at + K_TWIST] * contact[at + PHI] ** 2,
@@ -400,7 +415,11 @@ class JKR(NamedTuple):
         return contact[at + DAMPING] * (1.0 if self.damping == CONSTANT else s * s)
 
     def contact_radius(self, contact, at):
-        return contact[at + RADIUS_0] * contact[at + S] ** 2
+        x = contact[at + S] ** 2
+        if self.normal_force == DMT_FORCE:
+            # it shrinks to a point as the spheres part, where the stress of Eq. 32 would be infinite
+            x = max(x, S_END**2)
+        return contact[at + RADIUS_0] * x
 
     def pointers(self, contact, at):
         return (
@@ -409,14 +428,22 @@ class JKR(NamedTuple):
         )
 
     def stiffness(self, contact, at):
-        # The normal stiffness at equilibrium is 1.2 F_C/delta_0; 2.5 covers contacts pressed to 4 delta_0.
+        # In F_C/delta_0 the normal stiffness is 1.2 at equilibrium and stays below 2 x; with DMT it is 2 x, 1.39 at
+        # equilibrium. 2.5 covers contacts pressed to 4 delta_0.
         s = contact[at + S]
         k_n = contact[at + PULL_OFF] * contact[at + INV_DELTA0] * max(2.5, 2.0 * s * s)
         return k_n, contact[at + K_SLIDE], contact[at + K_ROLL], contact[at + K_TWIST]
 
 
+@jit
+def end_of(normal_force):
+    """delta/delta_0 below which a contact is gone: the end of the branch of JKR, or 0, where DMT has no neck."""
+    return 0.0 if normal_force == DMT_FORCE else COMPRESSION_END
+
+
 def jkr(
     *,
+    normal_force="JKR",
     damping="viscoelastic",
     constant_damping=0.01,
     friction="springs",
@@ -428,6 +455,9 @@ def jkr(
 
     Parameters
     ----------
+    normal_force : {"JKR", "DMT"}
+        The normal force, or that of Derjaguin, Muller & Toporov in its place, which holds 4/3 of the pull. Damping,
+        springs and their limits stay, with r0 and F_C of Johnson, Kendall & Roberts.
     damping : {"viscoelastic", "constant", "none"}
         Normal damping: Eq. 22 of Reissl et al. (2024) with T_vis of the material, or Eq. 4 of Kataoka et al. (2013).
     constant_damping : float
@@ -445,6 +475,8 @@ def jkr(
     ------
     InputError
     """
+    if normal_force not in NORMAL_FORCES:
+        raise InputError(f"normal_force is {normal_force!r}; allowed are {', '.join(NORMAL_FORCES)}.")
     if damping not in DAMPINGS:
         raise InputError(f"damping is {damping!r}; allowed are {', '.join(DAMPINGS)}.")
     if friction not in FRICTIONS:
@@ -459,4 +491,9 @@ def jkr(
         if not (np.isfinite(value) and value > 0.0 or value == 0.0 and name == "constant_damping"):
             raise InputError(f"{name} is {value!r}; it must be a number above 0.")
     numbers = {name: float(value) for name, value in numbers.items()}
-    return JKR(damping=DAMPINGS.index(damping), friction=friction == "springs", **numbers)
+    return JKR(
+        normal_force=NORMAL_FORCES.index(normal_force),
+        damping=DAMPINGS.index(damping),
+        friction=friction == "springs",
+        **numbers,
+    )

@@ -181,7 +181,7 @@ def state(tasks, what):
     return "\n".join(f"{path}: {there} of {wanted} {what}" for path, (there, wanted) in lines.items())
 
 
-def command(words, *, module, what, config, data, load, tasks):
+def command(words, *, module, what, config, data, load, tasks, study=None):
     """The command of a queue.
 
     Parameters
@@ -192,14 +192,16 @@ def command(words, *, module, what, config, data, load, tasks):
         Whose text is the help.
     what : str
         The rows, in the plural.
-    config : sequence of path-like
+    config : sequence of str
         Config files, each over those before it, where none is given.
-    data : path-like
+    data : str
         Folder of the tables where none is given.
     load : callable
         Config files -> plan, with `results`.
     tasks : callable
         Plan, folder of the tables -> list of `Task`.
+    study : str, optional
+        Name of the study where none is given. `config` and `data` then have the field ``{study}``.
 
     Returns
     -------
@@ -211,19 +213,22 @@ def command(words, *, module, what, config, data, load, tasks):
         description=module.__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    if study is not None:
+        parser.add_argument("--study", default=study, help=f"what to compute (default {study})")
     parser.add_argument("--config", action="append", help=f"config files (default {', '.join(map(str, config))})")
-    parser.add_argument("--data", default=data, help=f"folder of the tables (default {data})")
+    parser.add_argument("--data", help=f"folder of the tables (default {data})")
     parser.add_argument("--minutes", type=float, help=f"begin no {what} after so long")
     parser.add_argument("--processes", type=int, default=1, help=f"{what} side by side (default 1)")
     parser.add_argument("--list", action="store_true", help="say what there is and what is left")
     arguments = parser.parse_args(words)
+    name = getattr(arguments, "study", "")
 
     def say(text):
         print(text, file=sys.stderr, flush=True)
 
     try:
-        plan = load(*(arguments.config or config))
-        wanted = tasks(plan, arguments.data)
+        plan = load(*(arguments.config or [path.format(study=name) for path in config]))
+        wanted = tasks(plan, arguments.data or data.format(study=name))
         if arguments.list:
             print(state(wanted, what))
             return 0

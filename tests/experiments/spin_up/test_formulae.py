@@ -10,6 +10,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
+from ratd.experiments.spin_up.contact_law import contact_law, printed_factors
 from ratd.experiments.spin_up.figures.formulae import MEDIAN
 from ratd.experiments.spin_up.figures.formulae import formulae as figure
 from ratd.experiments.spin_up.formulae import (
@@ -17,7 +18,6 @@ from ratd.experiments.spin_up.formulae import (
     FORMULAE,
     formula_effects,
     formula_table,
-    printed_factors,
 )
 from ratd.experiments.spin_up.plan import load
 from ratd.geometry.box import open_space
@@ -52,6 +52,24 @@ def test_one_constant_of_a_contact_is_as_printed_and_no_other(formula):
         assert abs(value / expected[place] - 1) > 0.02
         expected[place] = value
     np.testing.assert_allclose(constants(jkr(**printed_factors(formula, NU))), expected, rtol=1e-12)
+
+
+def test_the_law_of_the_paper_has_all_formulae_as_printed_and_no_damping():
+    law = contact_law({"formulae": "printed"}, NU)
+    one_by_one = {name: jkr(**printed_factors(name, NU)) for name in FORMULAE}
+    expected = constants(jkr())
+    for place, name in enumerate(("sliding_stiffness", "sliding_limit", "twisting_stiffness")):
+        assert abs(constants(one_by_one[name])[place] / expected[place] - 1) > 0.02
+        expected[place] = constants(one_by_one[name])[place]
+    np.testing.assert_array_equal(constants(law), expected)
+    assert law.damping == jkr(damping="none").damping and law.normal_force == jkr().normal_force
+
+
+def test_a_law_in_words():
+    assert contact_law(None, NU) is None
+    assert contact_law({"normal_force": "DMT"}, NU) == jkr(normal_force="DMT")
+    both = contact_law({"normal_force": "DMT", "formulae": "printed"}, NU)
+    assert both == contact_law({"formulae": "printed"}, NU)._replace(normal_force=jkr(normal_force="DMT").normal_force)
 
 
 def test_only_the_run_without_damping_has_another_material():

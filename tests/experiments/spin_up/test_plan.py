@@ -9,6 +9,7 @@ from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up.how import STRETCH, TIMESTEP_FACTOR
 from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, check, load
 from ratd.experiments.spin_up.seeds import size_label
+from ratd.experiments.spin_up.spin import arguments
 from ratd.pipeline import config as configs
 from ratd.pipeline.config import merge
 from tiny_pipeline import ROOT
@@ -56,6 +57,9 @@ def test_quick_is_three_of_each():
         ({"materials": ["x-S"]}, "materials[0] is 'x-S'", "a-C, q-S"),
         ({"materials": []}, "materials is []", "at least one"),
         ({"materials": "q-S"}, "materials is 'q-S'", "a list"),
+        ({"run": {"law": {"normal_force": "Hertz"}}}, "run.law.normal_force is 'Hertz'", "JKR or DMT"),
+        ({"run": {"law": {"formulae": "own"}}}, "run.law.formulae is 'own'", "printed"),
+        ({"literal": {"law": {}}}, "literal.law is {}", "or null for the law of the model"),
         ({"types": ["BA", "BAM3"]}, "types[1] is 'BAM3'", "BA, BAM1 or BAM2"),
         ({"sizes_nm": [50, -50]}, "sizes_nm[1] is -50", "above 0"),
         ({"sizes_nm": [0]}, "sizes_nm[0] is 0", "above 0"),
@@ -439,6 +443,28 @@ def test_epsilon_is_one_for_all_types_or_one_for_each():
     assert same.pace("prescribed") == "epsilon = 0.05" and each.pace("literal") == "d omega/dt = 1.25e+14 rad/s²"
     assert each.pace("prescribed") == "epsilon = 0.02 (BA), 0.005 (BAM1), 0.01 (BAM2)"
     assert default.pace("prescribed") == "stretch = 2e-14 m"
+
+
+def test_a_law_is_a_setting_only_where_one_is_named():
+    block = ("q-S", "BA", "50", "0-9")
+    plain = load(*DEFAULT)
+    own = plain.spin_up("prescribed", *block)
+    assert "law" not in own and "law" not in arguments(own)
+    force = {"normal_force": "DMT"}
+    named = with_changes({"run": {"law": force}})
+    assert named.spin_up("prescribed", *block) == own | {"law": force}
+    assert arguments(named.spin_up("prescribed", *block))["law"] == force
+    assert named.parameters("prescribed", "BA", "100")[0]["spin_up"]["law"] == force
+    # each of these has a law of its own, beside the model
+    assert named.formula_runs("damping") == plain.formula_runs("damping")
+
+
+def test_a_drive_may_have_its_own_law():
+    printed = {"formulae": "printed"}
+    plan = with_changes({"drives": ["prescribed", "literal"], "literal": {"law": printed}})
+    assert plan.spin_up_of("literal", "BA")["law"] == printed and "law" not in plan.spin_up_of("prescribed", "BA")
+    other = with_changes({"run": {"law": printed}, "literal": {"law": None}})
+    assert other.spin_up_of("prescribed", "BA")["law"] == printed and "law" not in other.spin_up_of("literal", "BA")
 
 
 def test_snapshots_concern_the_block_of_the_grain_only():

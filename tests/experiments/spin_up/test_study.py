@@ -9,6 +9,7 @@ from ratd.experiments.spin_up import study
 from ratd.experiments.spin_up.grain_table import read_spun_up
 from ratd.experiments.spin_up.plan import Plan, load
 from ratd.pipeline import blocks, io, queue
+from tiny_pipeline import ROOT
 
 
 def plan(folder, **own):
@@ -92,8 +93,44 @@ def test_rows_of_another_spin_up_are_refused(done):
         study.tasks(other, done)
 
 
+def test_rows_are_of_the_law_that_the_config_names(done, tmp_path):
+    other = plan(tmp_path, types=["BAM2"], seeds={"first": 0, "number": 1})
+    other.config["run"]["law"] = {"normal_force": "DMT"}
+    assert queue.work(study.tasks(other, tmp_path), say=lambda text: None) == 0
+    (row,) = rows(tmp_path / "prescribed" / "q-S_BAM2.nc")
+    (own, _) = rows(done / "prescribed" / "q-S_BAM2.nc")
+    assert row.attrs["seed"] == own.attrs["seed"] and row.attrs["initial_mass"] == own.attrs["initial_mass"]
+    # the greatest pull is 4/3 of that of JKR
+    assert 1.05 < row["omega_first_loss"].item() / own["omega_first_loss"].item() < 1.25
+    with pytest.raises(InputError, match="holds rows with other settings"):
+        study.tasks(other, done)
+
+
+STUDIES = sorted(path.stem for path in (ROOT / "config" / "studies").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_is_the_file_of_its_name(name, monkeypatch):
+    """Also: rows that are there were made with the config that is there."""
+    monkeypatch.chdir(ROOT)
+    own = load(*(path.format(study=name) for path in study.CONFIG))
+    assert own.results == f"results/{name}"
+    wanted = study.tasks(own, study.DATA.format(study=name))
+    assert {task.table.path.parts[:4] for task in wanted} == {("docs", "reproduction", "data", name)}
+
+
+def test_the_command_takes_a_study_by_its_name(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    assert study.main(["--study", "dmt", "--list"]) == 0
+    assert capsys.readouterr().out.startswith("docs/reproduction/data/dmt/prescribed/q-S_BA.nc: ")
+    assert study.main(["--list"]) == 0
+    assert capsys.readouterr().out.startswith("docs/reproduction/data/spun_up/prescribed/a-C_BA.nc: ")
+    assert study.main(["--study", "none", "--list"]) == 1
+    assert "config/studies/none.yaml: cannot be read" in capsys.readouterr().err
+
+
 def test_the_config_of_the_study_is_the_whole_paper(tmp_path):
-    wanted = study.tasks(load(*study.CONFIG), tmp_path)
+    wanted = study.tasks(load(*(path.format(study=study.ENSEMBLE) for path in study.CONFIG)), tmp_path)
     drives = np.array([task.table.path.parent.name for task in wanted])
     assert np.sum(drives == "prescribed") == 2970 and np.sum(drives == "literal") == 495
     assert len({(task.table.path, task.key) for task in wanted}) == len(wanted)

@@ -1,6 +1,6 @@
 """Grains spun up with one formula as printed: the stage `formulae` of the pipeline."""
 
-from ratd.experiments.spin_up.formulae import printed_factors
+from ratd.experiments.spin_up.contact_law import printed_factors
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.same_grains import spin_up_ways
 from ratd.laws.jkr_with_springs import jkr

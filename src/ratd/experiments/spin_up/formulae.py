@@ -1,6 +1,6 @@
 """What single formulae of the paper change: the same grains with one as printed, beside the consistent model.
 
-The printed formulae stand here and nowhere else: nothing but this study computes with them.
+Those of contacts are made by `ratd.experiments.spin_up.contact_law`.
 """
 
 import pandas as pd
@@ -19,7 +19,6 @@ __all__ = [
     "OWN",
     "formula_effects",
     "formula_table",
-    "printed_factors",
     "table",
 ]
 
@@ -33,7 +32,7 @@ FORMULAE = {
     DAMPING: "no damping force, as in Eq. 29",
 }
 """Name -> what is used as printed; all else is the consistent model. Those of contacts are options of
-`ratd.laws.jkr`, see `printed_factors`; without the damping the material has the viscous time 0."""
+`ratd.laws.jkr`, see `ratd.experiments.spin_up.contact_law`; without the damping the material has the viscous time 0."""
 
 FORMULA_COLUMNS = {
     "formula": ("", f"what is used as printed: {', '.join(FORMULAE)}"),
@@ -48,35 +47,6 @@ FORMULA_COLUMNS = {
     "omega_mass_75_ratio": ("1", "omega_mass_75 over that of the same grain in the consistent model"),
 }
 """Units and meaning of the columns of `formula_table`."""
-
-
-def printed_factors(formula, poisson_number):
-    """Factors with which one formula of a contact is as printed.
-
-    Parameters
-    ----------
-    formula : str
-        A name of `FORMULAE`.
-    poisson_number : float
-        nu of the material of the grains.
-
-    Returns
-    -------
-    dict of str to float
-        Options of `ratd.laws.jkr`; none where the formula is not one of contacts.
-
-    Notes
-    -----
-    Printed over ours: G/(2 - 2 nu^2) over G/(2 (2 - nu)) (Eq. 13); 1 - nu over 2 - nu; G/(2 - 2 nu^2) over G/2
-    (Eq. 17).
-    """
-    nu = poisson_number
-    factors = {
-        "sliding_stiffness": (2.0 - nu) / (1.0 - nu**2),
-        "sliding_limit": (1.0 - nu) / (2.0 - nu),
-        "twisting_stiffness": 1.0 / (1.0 - nu**2),
-    }
-    return {formula: factors[formula]} if formula in factors else {}
 
 
 def formula_table(files):

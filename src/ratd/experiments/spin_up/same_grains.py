@@ -14,9 +14,8 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.marks import disruption
-from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.run_files import run_row
-from ratd.experiments.spin_up.spin import told
+from ratd.experiments.spin_up.spin import told, turn
 from ratd.geometry.box import open_space
 from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline.partial import Block
@@ -73,15 +72,17 @@ def spin_up_ways(job, targets, ways, kind, row, *, law=None):
         The files.
     ways : list of dict
         One a file: ``grain`` (material, type, a_eff, radii, migration, from `Settings.grow` of the plan), ``changed``
-        (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (arguments of
-        `ratd.spin_up`), and optionally ``reach``, after which runs with an angular acceleration end (`steps_to`).
+        (constants of the material that the grains do not grow with), ``seeds``, ``spin_up`` (as
+        `ratd.experiments.spin_up.spin.turn` takes it), and optionally ``reach``, after which runs with an angular
+        acceleration end (`steps_to`).
     kind : str
         Kind of the files.
     row : callable
         Makes the row of a grain in such a file from the run that `ratd.spin_up` returns.
     law : part, optional
-        Contact law of all runs, see `ratd.spin_up`.
+        Contact law of all runs, in place of the one that ``spin_up`` names.
     """
+    own = {} if law is None else {"law": law}
     of_target = dict(zip(map(str, targets), ways, strict=True))
     blocks = [
         Block(Path(target), way_material(way), way["seeds"], job.provenance_of(way, []))
@@ -97,7 +98,7 @@ def spin_up_ways(job, targets, ways, kind, row, *, law=None):
                 acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
                 how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
             progress = told(job.progress(f"{block.target.stem} seed {seed}"))
-            done(number, row(spin_up(grain, law=law, checkpoint=block.checkpoint(seed), progress=progress, **how)))
+            done(number, row(turn(grain, how, checkpoint=block.checkpoint(seed), progress=progress, **own)))
 
     job.blocks(blocks, kind, make)
 

@@ -70,9 +70,11 @@ class Settings(Cells):
         """Part of the config on the spin-up, for one drive.
 
         ``epsilon`` is that of a type, a number or None; with no type given as it stands in the config, where it may be
-        a mapping from type to number.
+        a mapping from type to number. ``law`` is there only where one is named, so that nothing else depends on it.
         """
         own = self.config["run"] | (self.config["literal"] if drive == "literal" else {})
+        if own.get("law") is None:
+            own.pop("law", None)
         if kind is not None and isinstance(own["epsilon"], dict):
             own["epsilon"] = own["epsilon"].get(kind)
         return own
@@ -250,7 +252,7 @@ class Settings(Cells):
         In the order of `formula_cells`.
         """
         own = self.config["figures"]["formulae"]
-        return [
+        runs = [
             {
                 "grain": self.grow(own["material"], kind, size),
                 "changed": {"viscous_time": 0.0} if formula == DAMPING else {},
@@ -259,6 +261,9 @@ class Settings(Cells):
             }
             for kind, size in self.formula_cells
         ]
+        for run in runs:  # each formula makes a law of its own
+            run["spin_up"].pop("law", None)
+        return runs
 
     @property
     def formula_cells(self):

@@ -1,13 +1,14 @@
 """Blocks of grains that are spun up: the stage `spin_up` of the pipeline, and its words of progress."""
 
 from ratd.aggregates.files import grains
+from ratd.experiments.spin_up.contact_law import contact_law
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.run_files import run_row
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.jobs import duration
 
-__all__ = ["arguments", "block", "told"]
+__all__ = ["arguments", "block", "told", "turn"]
 
 _HOW = ("drive", "stretch", "epsilon", "angular_acceleration", "timestep_factor", "max_steps", "records")
 
@@ -38,8 +39,28 @@ def told(say):
 
 
 def arguments(settings):
-    """Arguments of `ratd.spin_up` in the settings of a job."""
-    return {name: settings[name] for name in _HOW}
+    """What `turn` takes of the settings of a job: how to spin up, and ``law`` where one is named."""
+    how = {name: settings[name] for name in _HOW}
+    return how | {"law": settings["law"]} if "law" in settings else how
+
+
+def turn(grain, how, **options):
+    """Spin up a grain as a config says.
+
+    Parameters
+    ----------
+    grain : ratd.Grain
+    how : dict
+        Arguments of `ratd.spin_up`, but ``law`` in words, see `contact_law`.
+    **options
+        Further ones, which stand over those.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    law = contact_law(how.get("law"), grain.material.poisson_number)
+    return spin_up(grain, **how | {"law": law} | options)
 
 
 def block(job):
@@ -57,6 +78,6 @@ def block(job):
     def make(seed, checkpoint):
         every = settings["snapshot_every"] if seed in settings["snapshot_seeds"] else 0
         progress = told(job.progress(f"seed {seed}"))
-        return run_row(spin_up(of_seed[seed], **how, snapshot_every=every, checkpoint=checkpoint, progress=progress))
+        return run_row(turn(of_seed[seed], how, snapshot_every=every, checkpoint=checkpoint, progress=progress))
 
     job.block(job.output[0], "spinup", material_of(file), list(of_seed), make)

@@ -1,15 +1,16 @@
-"""A queue of spin-ups: the ensemble of the paper, grain by grain, which may be stopped at any time.
+"""A queue of spin-ups: the ensemble of the paper, grain by grain, which may be stopped at any time, and other studies.
 
     python -m ratd.experiments.spin_up.study --processes 2             # go on where it was, until all is done
     python -m ratd.experiments.spin_up.study --processes 2 --minutes 30
     python -m ratd.experiments.spin_up.study --list                    # what there is and what is left
+    python -m ratd.experiments.spin_up.study --study dmt               # another study than the ensemble
 
-What there is to do stands in config/spin_up_study.yaml, which stands over config/spin_up.yaml. One seed of all
-materials, types and sizes comes before the next, so that what is there is an ensemble at any time, a smaller one. Each
-grain becomes a row of a small table in docs/reproduction/data/spun_up, a file a drive, material and type: its marks of
-disruption, what it was just before, and the fragments that left. A row that is there is never computed again, also not
-with other source: it says itself which source it is of. docs/quasi_static.md tells of this ensemble: after more rows
-`python -m ratd.validation.quasi_static_page redraw` writes it anew.
+What there is to do stands in config/studies/NAME.yaml, which stands over config/spin_up.yaml; the ensemble is spun_up.
+One seed of all materials, types and sizes comes before the next, so that what is there is an ensemble at any time, a
+smaller one. Each grain becomes a row of a small table in docs/reproduction/data/NAME, a file a drive, material and
+type: its marks of disruption, what it was just before, and the fragments that left. A row that is there is never
+computed again, also not with other source: it says itself which source it is of. docs/quasi_static.md tells of the
+ensemble: after more rows `python -m ratd.validation.quasi_static_page redraw` writes it anew.
 """
 
 import sys
@@ -21,15 +22,15 @@ from ratd.experiments.spin_up import plan as plans
 from ratd.experiments.spin_up.fragmentation import fragmentation
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.marks import before_marks, disruption
-from ratd.experiments.spin_up.run import spin_up
-from ratd.experiments.spin_up.spin import arguments
+from ratd.experiments.spin_up.spin import arguments, turn
 from ratd.pipeline.provenance import settings_hash, source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 
-__all__ = ["CONFIG", "DATA", "main", "tasks"]
+__all__ = ["CONFIG", "DATA", "ENSEMBLE", "main", "tasks"]
 
-CONFIG = ("config/config.yaml", "config/spin_up.yaml", "config/spin_up_study.yaml")
-DATA = "docs/reproduction/data/spun_up"
+ENSEMBLE = "spun_up"
+CONFIG = ("config/config.yaml", "config/spin_up.yaml", "config/studies/{study}.yaml")
+DATA = "docs/reproduction/data/{study}"
 _KEY = ("a_eff", "seed")
 
 
@@ -58,9 +59,9 @@ def tasks(plan, data):
         wanted = [(seed, cell) for cell in plan.cells_of(drive) for seed in plan.seeds_of(cell, drive)]
         for seed, cell in sorted(wanted, key=lambda pair: pair[0]):
             growth = plan.grow(*cell)
-            turn = arguments(plan.spin_up(drive, *cell, f"{seed}-{seed}"))
-            checkpoint = checkpoints / f"{settings_hash({'growth': growth, 'turn': turn})}_{seed}"
-            make = partial(spun_up, growth, turn, seed, checkpoint=checkpoint, source=source)
+            how = arguments(plan.spin_up(drive, *cell, f"{seed}-{seed}"))
+            checkpoint = checkpoints / f"{settings_hash({'growth': growth, 'turn': how})}_{seed}"
+            make = partial(spun_up, growth, how, seed, checkpoint=checkpoint, source=source)
             found.append(Task(tables[cell[:2]], key(float(cell[2]) * NM, seed), make))
     return found
 
@@ -73,15 +74,15 @@ def _table(plan, data, drive, material, kind):
     return Table(path, "spun_up", _KEY, plan.materials[material], settings)
 
 
-def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
+def spun_up(growth, how, seed, *, checkpoint=None, source=""):
     """One grain, grown and spun up, as a row of a table.
 
     Parameters
     ----------
     growth : dict
         As `ratd.experiments.spin_up.grow.grown` takes it.
-    turn : dict
-        Arguments of `ratd.spin_up`.
+    how : dict
+        As `ratd.experiments.spin_up.spin.turn` takes it.
     seed : int
     checkpoint : path-like, optional
         Of a long run; removed when it is finished.
@@ -94,7 +95,7 @@ def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
         Of the kind spun_up.
     sentence : str
     """
-    run = spin_up(grown(growth, seed), **turn, checkpoint=checkpoint)
+    run = turn(grown(growth, seed), how, checkpoint=checkpoint)
     row = disruption(run)
     for name, value in (before_marks(run, row) | {"source": source}).items():
         row[name] = value
@@ -106,7 +107,7 @@ def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
     if checkpoint is not None:
         Path(checkpoint).unlink(missing_ok=True)
     return row, (
-        f"{turn['drive']} {run.attrs['material']} {run.attrs['type']} {run.attrs['a_eff'] / NM:.0f} nm seed {seed}: "
+        f"{how['drive']} {run.attrs['material']} {run.attrs['type']} {run.attrs['a_eff'] / NM:.0f} nm seed {seed}: "
         f"omega_disr {row['omega_disr'].item():.3g} rad/s, {run.attrs['steps']} steps"
     )
 
@@ -114,8 +115,9 @@ def spun_up(growth, turn, seed, *, checkpoint=None, source=""):
 def main(words=None):
     """The command; returns the exit status, see `ratd.pipeline.queue.command`."""
     return command(
-        words, module=sys.modules[__name__], what="grains", config=CONFIG, data=DATA, load=plans.load, tasks=tasks
-    )
+        words, module=sys.modules[__name__], what="grains", config=CONFIG, data=DATA, load=plans.load, tasks=tasks,
+        study=ENSEMBLE,
+    )  # fmt: skip
 
 
 if __name__ == "__main__":
