@@ -201,9 +201,9 @@ def make_matrix(state, law, box, theta, dt, work):
     Notes
     -----
     The unknowns of a monomer are v and a w, velocity and spin times radius, so that all blocks are masses. With n from
-    j to i, the contact points slide by P g, P = 1 - n n^T and g = v_i - v_j + arm_i x (a_i w_i) + arm_j x (a_j w_j), which
-    is 0 for a rigid motion (`arms`). After rolling the arms are not along n, and a contact that twists slides as well.
-    Taken along n they would tell the step too little stiffness, and a grain that has rolled by more than about r_0 would
+    j to i the contact points slide by P g, P = 1 - n n^T and g = v_i - v_j + arm_i x (a_i w_i) + arm_j x (a_j w_j); a
+    rigid motion has g = 0 (`arms`). After rolling the arms are not along n, and a contact that twists slides as well.
+    Taken along n they would tell the step too little stiffness: a grain that has rolled by more than about r_0 would
     never come to rest.
     """
     factor = work.factor
@@ -253,8 +253,8 @@ def arms(n, a_i, p_i, a_j, p_j, distance):
     a_i, a_j : float
         Radii [m].
     p_i, p_j : tuple of float
-        Unit vectors from the contact to the centre of i, and from that of j to the contact, fixed in the monomers. After
-        rolling they are not along n.
+        Unit vectors from the contact to the centre of i, and from that of j to the contact, fixed in the monomers:
+        after rolling they are not along n.
     distance : float
         Of the centres [m].
 

@@ -30,8 +30,8 @@ stiffness(contact, at)
     k_n, k_s [N/m] and k_r, k_t [N m] of a contact, not below those of any state that it may reach in a step.
 
 What a law does not have is an error when it is compiled: the semi-implicit step asks for `pointers`,
-`stiffness` and `damping_now`, stresses for `contact_radius`. `tests/laws/test_own_law.py` adds a law in one file. A contact begins
-when two surfaces touch.
+`stiffness` and `damping_now`, stresses for `contact_radius`. `tests/laws/test_own_law.py` adds a law in one file. A
+contact begins when two surfaces touch.
 
 jkr_with_springs         the law of Johnson, Kendall & Roberts with springs of limited displacement: `jkr`
 dmt_with_friction        the law of Derjaguin, Muller & Toporov with friction of limited force: `dmt`

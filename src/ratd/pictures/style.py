@@ -383,9 +383,13 @@ def power_of_ten(values):
     return exponent, rf"$10^{{{exponent}}}$ "
 
 
+DRIVE_NAMES = {"prescribed": "driven", "torque": "driven by a torque", "literal": "printed terms of the frame"}
+"""Drive of the code -> what it is, for people."""
+
+
 def drive_text(drive):
     """How the drive is named in a title."""
-    return f"drive: {drive}" if drive else "drive not stated"
+    return DRIVE_NAMES.get(drive, f"drive: {drive}") if drive else "drive not stated"
 
 
 def drive_of(table):

@@ -16,20 +16,28 @@ from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
 from ratd.experiments.spin_up import claims, side_findings
 from ratd.experiments.spin_up import findings as numbers
+from ratd.experiments.spin_up import pulled as pulls
+from ratd.experiments.spin_up.eq33 import fit_ensemble
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure2 import figure2
 from ratd.experiments.spin_up.figures.figure4 import figure4
-from ratd.experiments.spin_up.figures.figure5 import figure5
+from ratd.experiments.spin_up.figures.figure5 import figure5, nearest_snapshots
 from ratd.experiments.spin_up.figures.figure6 import figure6
 from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure9 import figure9
 from ratd.experiments.spin_up.figures.figure10 import figure10
+from ratd.experiments.spin_up.figures.fragments import fragments
+from ratd.experiments.spin_up.figures.law import law
+from ratd.experiments.spin_up.figures.overview import overview
+from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import fragment_table, read_spun_up_fragments
 from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, read_ensemble, read_spun_up
+from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.plan import load
-from ratd.experiments.spin_up.run_files import read_runs
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
+from ratd.experiments.spin_up.run_files import read_runs, run_row, runs
 from ratd.experiments.spin_up.surviving import limits
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
@@ -52,6 +60,9 @@ TABLE_COLUMNS = (
     "material", "type", "a_eff", "seed", "n_monomers", "n_contacts", "filling_factor", "mean_monomer_radius",
     "cut_bound", "omega_first_loss", "omega_mass_75", "omega_disr",
 )  # fmt: skip
+LAMMPS = "validation/data/tables/lammps.csv"
+"""Below docs, written by docs/validation.md."""
+RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
 
@@ -76,6 +87,10 @@ class Data(NamedTuple):
         ``parameters`` (figure 9), ``formulae``.
     pairs : list of pandas.DataFrame
         Of figure 10.
+    pulled : pandas.DataFrame
+        Grains that were pulled apart.
+    lammps : pandas.DataFrame
+        Thresholds of both codes, from the validation.
     """
 
     grown: pd.DataFrame
@@ -88,6 +103,8 @@ class Data(NamedTuple):
     grains: list
     tables: dict
     pairs: list
+    pulled: pd.DataFrame
+    lammps: pd.DataFrame
 
 
 def collect(results, data=DATA):
@@ -111,7 +128,9 @@ def collect(results, data=DATA):
     wanted = plan.config["figures"]["figure5"]["seed"]
     rows = [row for row in blocks.rows(file, "spinup") if row.attrs["seed"] == wanted]
     kept = {name: file.attrs[name] for name in ("settings", "settings_hash") if name in file.attrs}
-    block = blocks.block(rows, "spinup", blocks.material_of(file), kept)
+    (run,) = runs(blocks.block(rows, "spinup", blocks.material_of(file), kept))
+    looks = sorted(set(nearest_snapshots(run, disruption(run)["omega_disr"].item())))
+    block = blocks.block([run_row(run.isel(snapshot=looks))], "spinup", blocks.material_of(file), kept)
     io.write(data / f"figure5/{DRIVEN}.nc", block, "spinup")
 
 
@@ -143,13 +162,11 @@ def read_data(data=DATA):
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
         },
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
-        runs={
-            f"{name}/{drive}": read_runs(data / name / f"{drive}.nc")
-            for name in ("figure4", "figure5")
-            for drive in (DRIVEN, PRINTED)
-        },
+        runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
+        pulled=pulls.read(data / "pulled"),
+        lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
@@ -177,6 +194,11 @@ def findings(data):
     values |= side_findings.of_formulae(data.tables["formulae"])
     values |= side_findings.of_curve(data.driven, data.grown) | side_findings.of_prediction(data.driven)
     values |= side_findings.composition_tables() | side_findings.of_heat()
+    values |= pulls.findings(data.pulled, data.driven)
+    printed = load(*CONFIGS).config["literal"]
+    values |= side_findings.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
+    values |= side_findings.of_lammps(data.lammps)
+    values |= side_findings.of_fragments(data.fragments[DRIVEN])
     values |= limits(data.driven, data.grown, mark=numbers.MARK)
     if data.recomputed is not None:
         values |= side_findings.recomputed(data.printed, data.recomputed)
@@ -192,11 +214,16 @@ def figures(data):
     for drive, table in ((DRIVEN, data.driven), (PRINTED, data.printed)):
         six, eight = plan.figure("figure6", drive), plan.figure("figure8", drive)
         yield f"figure4_{drive}", figure4(data.runs[f"figure4/{drive}"], drive=drive)
-        yield f"figure7_{drive}", figure7(table, drive=drive, grown=data.grown)
+        fit = fit_ensemble(table, PAPER_MEAN_RADIUS)
+        yield f"figure7_{drive}", figure7(table, fit, drive=drive, grown=data.grown)
         if drive == DRIVEN:
             yield f"figure5_{drive}", figure5(data.runs[f"figure5/{drive}"][0], drive=drive)
             yield f"figure6_{drive}", figure6(table, six["material"], six["sizes"], drive=drive)
             yield f"figure8_{drive}", figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown)
+    yield "overview", overview(data.driven, data.printed, data.firm, data.grown)
+    yield "law", law(data.driven)
+    yield "fragments", fragments(data.fragments[DRIVEN], drive=DRIVEN)
+    yield "pulled", pulled(data.pulled, data.driven)
     yield "figure1", figure1(data.grains)
     yield "figure2", figure2(data.grown)
     yield "radiation", radiation(data.driven, data.grown, drive=DRIVEN)

@@ -163,6 +163,7 @@ def of_table_3(letter, table):
         values[f"{start} alpha"] = f"{own['alpha'].item():.2f} ({low:.2f} to {high:.2f})".replace("-", "−")
         values[f"{start} printed"] = f"{A:.2f}, {alpha:.2f}"
     values[f"{letter}.table3 held"] = held
+    values[f"{letter}.holds alpha"] = {len(TABLE_3): "yes", 0: "no"}.get(held, "open")
     alphas = fit["alpha"].values
     values[f"{letter}.alpha least"], values[f"{letter}.alpha most"] = float(alphas.min()), float(alphas.max())
     return values
