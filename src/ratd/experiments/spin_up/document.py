@@ -121,7 +121,7 @@ def collect(results, data=DATA):
         _copy(results / source, data / f"{name}.nc", name)
     for material in plan.config["materials"]:
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
-    path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
+    path = "{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc".format(results=results)
     _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
     (source,) = plan.figure5_files(path, DRIVEN)
     file = _read(source, "spinup")
