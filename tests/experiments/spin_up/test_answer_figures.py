@@ -69,7 +69,7 @@ def test_overview_has_a_bound_a_type_and_a_panel_for_the_other_drive(table):
     figure = overview(table, literal, bounds(table), table)
     left, right = figure.axes
     assert left.get_ylim() == right.get_ylim() and figure.get_figwidth() == TWO_COLUMNS
-    assert "drive: prescribed" in left.get_title() and "drive: literal" in right.get_title()
+    assert "driven" in left.get_title() and "printed terms of the frame" in right.get_title()
     for kind, factor in FACTOR.items():
         np.testing.assert_allclose(markers(right, kind)[0].get_ydata().astype(float), 10 * factor)
         for axes in (left, right):
@@ -162,7 +162,7 @@ def test_fragments_have_a_column_a_class_and_the_slope_of_the_power_law():
     for axes in bottom:
         lengths = np.array([bar.get_width() for bar in axes.patches]).reshape(3, 3)
         np.testing.assert_allclose(lengths.sum(axis=1), 100)
-    assert "drive: prescribed" in figure.get_suptitle() and "first half" in figure.get_suptitle()
+    assert "driven" in figure.get_suptitle() and "first half" in figure.get_suptitle()
     one = fragments(table[table["a_eff"] < 100e-9])
     assert len(one.axes) == 2 and "drive" not in one.get_suptitle()
     with pytest.raises(InputError, match="at least one fragment"):

@@ -41,6 +41,7 @@ from ratd.pictures.style import (
     TWO_COLUMNS,
     TYPE_COLOUR,
     TYPE_MARKER,
+    drive_text,
     label_ends,
     logarithmic,
     mean_and_range,
@@ -218,7 +219,7 @@ def test_each_figure_names_its_drive(drive):
         figure7(table),
         figure8(table),
     ):
-        assert f"drive: {drive}" in figure.get_suptitle()
+        assert drive_text(drive) in figure.get_suptitle()
     assert "drive: mine" in figure2(table, drive="mine").get_suptitle()
 
 

@@ -234,7 +234,7 @@ def test_limits_fill_a_document(table):
 def test_figure_shows_ours_below_the_printed_law(table, tmp_path):
     figure = radiation(table, table)
     assert [axes.get_title() for axes in figure.axes] == ["a-C", "q-S", "co-S"]
-    assert "prescribed" in figure.get_suptitle()
+    assert "driven" in figure.get_suptitle()
     for axes in figure.axes:
         drawn = [line for line in axes.lines if len(line.get_xdata()) > 2]
         assert len(drawn) == 3 * 2 * 2

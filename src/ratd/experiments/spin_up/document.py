@@ -121,7 +121,7 @@ def collect(results, data=DATA):
         _copy(results / source, data / f"{name}.nc", name)
     for material in plan.config["materials"]:
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
-    path = "{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc".format(results=results)
+    path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
     _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
     (source,) = plan.figure5_files(path, DRIVEN)
     file = _read(source, "spinup")
@@ -219,7 +219,10 @@ def figures(data):
         if drive == DRIVEN:
             yield f"figure5_{drive}", figure5(data.runs[f"figure5/{drive}"][0], drive=drive)
             yield f"figure6_{drive}", figure6(table, six["material"], six["sizes"], drive=drive)
-            yield f"figure8_{drive}", figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown)
+            yield (
+                f"figure8_{drive}",
+                figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown, fit=fit),
+            )
     yield "overview", overview(data.driven, data.printed, data.firm, data.grown)
     yield "law", law(data.driven)
     yield "fragments", fragments(data.fragments[DRIVEN], drive=DRIVEN)

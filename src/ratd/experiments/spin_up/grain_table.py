@@ -14,7 +14,16 @@ from ratd.experiments.spin_up.marks import VARIABLES as MARK_COLUMNS
 from ratd.pipeline import io
 from ratd.pipeline.kinds import kind_of
 
-__all__ = ["COLUMNS", "GRAIN_COLUMNS", "KEYS", "RUN_COLUMNS", "grain_table", "read_ensemble", "read_spun_up", "table_dataset"]
+__all__ = [
+    "COLUMNS",
+    "GRAIN_COLUMNS",
+    "KEYS",
+    "RUN_COLUMNS",
+    "grain_table",
+    "read_ensemble",
+    "read_spun_up",
+    "table_dataset",
+]
 
 KEYS = ("material", "type", "a_eff", "seed")
 """The columns that together name one grain."""

@@ -203,9 +203,13 @@ def composition_tables():
     head = ["gamma [mJ/m²]", "E [GPa]", "nu", "rho [kg/m³]"]
     two = []
     for row in table2().to_dict("records"):
-        cells = (f"{row[name] / unit:.4g} ({row[f'{name}_printed'] / unit:.4g})" for name, (*_, unit) in PROPERTIES.items())
+        cells = (
+            f"{row[name] / unit:.4g} ({row[f'{name}_printed'] / unit:.4g})" for name, (*_, unit) in PROPERTIES.items()
+        )
         two.append(f"| {row['material']} | " + " | ".join(cells) + " |")
     return {
         "table1": "\n".join(["| ratio | computed | printed | computed/printed |", "|---|---|---|---|", *one]),
-        "table2": "\n".join(["| material, used (printed) | " + " | ".join(head) + " |", "|---|" + "---|" * len(head), *two]),
+        "table2": "\n".join(
+            ["| material, used (printed) | " + " | ".join(head) + " |", "|---|" + "---|" * len(head), *two]
+        ),
     }

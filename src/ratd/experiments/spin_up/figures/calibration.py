@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES, ONSET, PRINTED_STEP, same_rate
-from ratd.pictures.style import GREY, ONE_COLUMN, bar_lengths, logarithmic, nanometres, new_figure, styled
+from ratd.pictures.style import GREY, ONE_COLUMN, bar_lengths, drive_text, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
 
 RUN, FIT = "#0072B2", "#D55E00"
@@ -45,7 +45,7 @@ def calibration(table, fit):
     runs = f"{plural(len(table), 'run')} of {plural(table['seed'].nunique(), 'grain')}"
     cell = f"{first['material']} {first['type']} {nanometres(first['a_eff']):.0f} nm"
     rates = plural(same_rate(table["printed_acceleration"]).nunique(), "rate")
-    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, f"{cell}, {runs} at {rates}\ndrive: literal")
+    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, f"{cell}, {runs} at {rates}\n{drive_text('literal')}")
     axes = figure.subplots()
     for rate in same_rate(table["printed_acceleration"]).unique():
         axes.axvline(rate, color="0.88", lw=0.8, zorder=0)

@@ -8,7 +8,7 @@ from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import sort_cells
 from ratd.experiments.spin_up.printed import PAIR_ERROR
-from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
+from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, drive_text, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
 
 LOOK = {
@@ -68,7 +68,7 @@ def figure10(table):
     ]
     wide = len(names) > 1
     of_each = " of each material" if wide else ""
-    title = (", " if wide else "\n").join([f"{pairs} of equal monomers{of_each}, drive: prescribed", *how])
+    title = (", " if wide else "\n").join([f"{pairs} of equal monomers{of_each}, {drive_text('prescribed')}", *how])
     figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.6 * TWO_COLUMNS, title)
     panels = figure.subplots(2, len(names), sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1])
     for (top, bottom), name in zip(panels.T, names, strict=True):
