@@ -13,7 +13,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import centre_of_mass
 
-__all__ = ["MIGRATIONS", "TYPES", "grow", "grow_with_radii", "smallest_a_eff"]
+__all__ = ["MIGRATIONS", "TYPES", "grain_radii", "grow", "grow_with_radii", "smallest_a_eff"]
 
 TYPES = {"BA": 0, "BAM1": 1, "BAM2": 2}
 """Aggregation models by name, with the number of times that a monomer migrates after its first touch."""
@@ -74,10 +74,37 @@ def grow(type, a_eff, material, seed, *, distribution=None, migration="random"):
     migrations = TYPES[_check_type(type)]
     a_eff = _check_a_eff(a_eff, type, distribution)
     seed = check_seed(seed)
-    radii_seed, place_seed = seed_sequence(material.name, type, round(a_eff / 1e-12), seed).spawn(2)
-    radius = draw_radii(a_eff, migrations + 2, distribution, np.random.Generator(np.random.PCG64(radii_seed)))
-    position = _place(radius, material, migrations, migration, place_seed)
+    radius = grain_radii(type, a_eff, material.name, seed, distribution)
+    position = _place(radius, material, migrations, migration, _grain_seeds(type, a_eff, material.name, seed)[1])
     return Grain(position, radius, material, type=type, a_eff=a_eff, seed=seed)
+
+
+def grain_radii(type, a_eff, material, seed, distribution):
+    """Radii of the monomers of the grain that `grow` makes, without growing it.
+
+    Parameters
+    ----------
+    type : str
+        A name of `TYPES`.
+    a_eff : float
+        Effective radius [m].
+    material : str
+        Name of the material.
+    seed : int
+    distribution : RadiusDistribution
+
+    Returns
+    -------
+    (n,) float64 array
+        [m], in the order in which the monomers arrive.
+    """
+    rng = np.random.Generator(np.random.PCG64(_grain_seeds(type, a_eff, material, seed)[0]))
+    return draw_radii(a_eff, TYPES[type] + 2, distribution, rng)
+
+
+def _grain_seeds(type, a_eff, material, seed):
+    """Seeds of the radii of a grain and of their places."""
+    return seed_sequence(material, type, round(a_eff / 1e-12), seed).spawn(2)
 
 
 def grow_with_radii(type, radii, material, seed, *, migration="random"):
