@@ -17,6 +17,7 @@ from ratd.base.errors import FileError
 from ratd.experiments.spin_up import claims, side_findings
 from ratd.experiments.spin_up import findings as numbers
 from ratd.experiments.spin_up import pulled as pulls
+from ratd.experiments.spin_up import studies as beside
 from ratd.experiments.spin_up.eq33 import fit_ensemble
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure2 import figure2
@@ -91,6 +92,8 @@ class Data(NamedTuple):
         Grains that were pulled apart.
     lammps : pandas.DataFrame
         Thresholds of both codes, from the validation.
+    studies : dict
+        See `ratd.experiments.spin_up.studies.studies`.
     """
 
     grown: pd.DataFrame
@@ -105,6 +108,7 @@ class Data(NamedTuple):
     pairs: list
     pulled: pd.DataFrame
     lammps: pd.DataFrame
+    studies: dict
 
 
 def collect(results, data=DATA):
@@ -166,6 +170,7 @@ def read_data(data=DATA):
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
         pulled=pulls.read(data / "pulled"),
+        studies=beside.studies(data),
         lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
@@ -198,6 +203,7 @@ def findings(data):
     printed = load(*CONFIGS).config["literal"]
     values |= side_findings.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
     values |= side_findings.of_lammps(data.lammps)
+    values |= beside.findings(data.studies)
     values |= side_findings.of_fragments(data.fragments[DRIVEN])
     values |= limits(data.driven, data.grown, mark=numbers.MARK)
     if data.recomputed is not None:
