@@ -1,0 +1,313 @@
+"""Studies beside the ensemble: what another normal force, other radii of monomers and the printed equations change.
+
+Their rows come from `ratd.experiments.spin_up.study`. Where a study has grains of the ensemble, each is compared with
+itself. Where its monomers are others, so are its grains, and the geometric means of the cells are compared.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.growth import grain_radii
+from ratd.aggregates.radii import RadiusDistribution
+from ratd.base.errors import FileError
+from ratd.base.statistics import equal_weights, mean_of, median_of, slope_error, slope_of
+from ratd.experiments.spin_up.cells import cell_of, size_key
+from ratd.experiments.spin_up.eq33 import eq33_omega
+from ratd.experiments.spin_up.grain_table import read_spun_up
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
+from ratd.experiments.spin_up.run_files import read_table
+from ratd.pipeline import io
+from ratd.pipeline.documents import Measured
+
+__all__ = ["DATA", "MARKS", "cell_ratio", "carried_over", "findings", "paired", "studies", "with_radii"]
+
+DATA = Path("docs/reproduction/data")
+ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
+EQUAL = ("equal_30nm", "equal_41nm")
+OTHER_MONOMERS = (*EQUAL, "second_reading")
+MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
+TYPES = ("BA", "BAM1", "BAM2")
+POWERS = {1: "<a>", 2: "<a²>^(1/2)", 3: "<a³>^(1/3)"}
+"""Means of the radii of a grain's monomers that may stand for <a_mon> in Eq. 33."""
+
+
+def with_radii(table, folder, wanted=None):
+    """A table of grains with means of the radii of their monomers, which are drawn anew.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `read_spun_up`.
+    folder : path-like
+        Where its rows are, which say how their grains were grown.
+    wanted : (n,) array_like of bool, optional
+        The grains that are to have them, all when not given.
+
+    Returns
+    -------
+    pandas.DataFrame
+        With ``radius_k`` [m], <a^k>^(1/k) of the grain, for each power k of `POWERS`.
+    """
+    growth = {}
+    for path in sorted(Path(folder).glob("*.nc")):
+        own = json.loads(io.read(path, "spun_up").attrs["settings"])["growth"]
+        growth[own["material"]["name"], own["type"]] = RadiusDistribution(**own["radii"])
+    wanted = np.ones(len(table), dtype=bool) if wanted is None else np.asarray(wanted)
+    means = np.full((len(table), len(POWERS)), np.nan)
+    for k in np.flatnonzero(wanted):
+        row = table.iloc[k]
+        distribution = growth[row["material"], row["type"]]
+        radii = grain_radii(row["type"], row["a_eff"], row["material"], int(row["seed"]), distribution)
+        means[k] = [np.mean(radii**power) ** (1 / power) for power in POWERS]
+    return table.assign(**{f"radius_{power}": means[:, k] for k, power in enumerate(POWERS)})
+
+
+def studies(data=DATA):
+    """Tables of the studies, the ensemble among them.
+
+    Parameters
+    ----------
+    data : path-like
+        Folder of all rows.
+
+    Returns
+    -------
+    dict of str to pandas.DataFrame
+        Name of a study -> its table; those with other monomers, and grains of the ensemble of the same materials and
+        sizes, `with_radii`. ``literal``: the grains of the ensemble with this drive, of the queue where it has
+        them, else of the pipeline.
+
+    Raises
+    ------
+    FileError
+        If a study has no rows.
+    """
+    data = Path(data)
+    found = {}
+    for name in (ENSEMBLE, DMT, *OTHER_MONOMERS, PRINTED):
+        folder = data / name / ("literal" if name == PRINTED else "prescribed")
+        if not any(folder.glob("*.nc")):
+            raise FileError(
+                f"{folder}: holds no rows; `python -m ratd.experiments.spin_up.study --study {name}` makes them"
+            )
+        found[name] = read_spun_up(folder)
+        if name in OTHER_MONOMERS:
+            found[name] = with_radii(found[name], folder)
+    wanted = _in_cells_of(found[ENSEMBLE], pd.concat([found[name] for name in OTHER_MONOMERS]))
+    found[ENSEMBLE] = with_radii(found[ENSEMBLE], data / ENSEMBLE / "prescribed", wanted)
+    literal = read_table(data / "ensemble" / "literal" / "grains.nc")
+    queue = data / ENSEMBLE / "literal"
+    if any(queue.glob("*.nc")):
+        literal = pd.concat([read_spun_up(queue), literal], ignore_index=True)
+        named = literal.assign(size=size_key(literal["a_eff"]))[["material", "type", "size", "seed"]]
+        literal = literal[~named.duplicated()].reset_index(drop=True)
+    found["literal"] = literal
+    return found
+
+
+def _in_cells_of(table, other):
+    """Whether grains are of a material, type and size of another table, (n,) of bool."""
+    cell = cell_of(pd.concat([table, other], ignore_index=True))
+    return np.isin(cell[: len(table)], cell[len(table) :])
+
+
+def paired(table, beside):
+    """Marks of grains over those of the same grains in another table.
+
+    Parameters
+    ----------
+    table, beside : pandas.DataFrame
+        As `ratd.experiments.spin_up.grain_table.grain_table` makes them.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of `table` that have such a grain, with ``NAME_ratio`` for each of `MARKS`.
+    """
+    key = ["material", "type", "size", "seed"]
+    first, second = (own.assign(size=size_key(own["a_eff"])) for own in (table, beside))
+    pairs = first.merge(second[[*key, *MARKS]], on=key, suffixes=("", "_beside"))
+    return pairs.assign(**{f"{mark}_ratio": pairs[mark] / pairs[f"{mark}_beside"] for mark in MARKS})
+
+
+def cell_ratio(table, beside, column):
+    """Geometric mean of a column over that of other grains: mean over the cells (material, type, size) that both have.
+
+    Parameters
+    ----------
+    table, beside : pandas.DataFrame
+        One row a grain, with material, type, a_eff [m] and the column; NaN are left out.
+    column : str
+        Of numbers above 0.
+
+    Returns
+    -------
+    Measured
+        NaN without common cells. All cells count alike. The error comes from the scatter of the grains in the cells
+        of both; a bootstrap of the few grains of a cell would give sqrt(1 - 1/n) of it.
+    """
+    both = pd.concat([table, beside], ignore_index=True)
+    mine = np.arange(len(both)) < len(table)
+    values = both[column].to_numpy(float)
+    there = np.isfinite(values)
+    cell = cell_of(both)
+    common = there & np.isin(cell, np.intersect1d(cell[there & mine], cell[there & ~mine]))
+    (first, error), (second, other) = (
+        mean_of(np.log(values[common & part]), cell[common & part]) for part in (mine, ~mine)
+    )
+    ratio = float(np.exp(first - second))
+    return Measured(ratio, ratio * float(np.hypot(error, other)))
+
+
+def carried_over(table, beside, mark, k):
+    """A mark over what Eq. 33, with its exponent fitted to other grains, says of it.
+
+    Parameters
+    ----------
+    table, beside : pandas.DataFrame
+        Of one type, with n_contacts, filling_factor, radius_k [m] and the mark.
+    mark : str
+    k : int
+        Of `POWERS`: <a_mon> in Eq. 33 is <a^k>^(1/k).
+
+    Returns
+    -------
+    ratio : Measured
+        As `cell_ratio` of omega a_eff sqrt(<a_mon>)/(N_con phi)^alpha; 1 where the law holds for both.
+    alpha : Measured
+        Fitted to the grains of `beside` in the cells of both.
+    """
+    beside = beside[_in_cells_of(beside, table)]
+    x, y = _law(beside, mark, k)
+    there = np.isfinite(x + y)
+    size = size_key(beside["a_eff"]).to_numpy()[there]
+    alpha, influence = slope_of(x[there], y[there], beside["material"].to_numpy()[there], equal_weights(size))
+    first, second = (_levelled(own, mark, k, alpha) for own in (table, beside))
+    ratio, lever = cell_ratio(first, second, "level"), np.log(cell_ratio(first, second, "lever").value)
+    alpha = Measured(alpha, slope_error(influence))
+    return Measured(ratio.value, float(np.hypot(ratio.error, ratio.value * lever * alpha.error))), alpha
+
+
+def _law(table, mark, k):
+    """ln(N_con phi) and ln(omega a_eff sqrt(<a_mon>)) of grains, (n,) each."""
+    x = np.log(table["n_contacts"] * table["filling_factor"])
+    y = np.log(table[mark] * table["a_eff"] * np.sqrt(table[f"radius_{k}"]))
+    return x.to_numpy(float), y.to_numpy(float)
+
+
+def _levelled(table, mark, k, alpha):
+    """A table with what is left of a mark beyond Eq. 33, ``level``, and N_con phi, ``lever``."""
+    x, y = _law(table, mark, k)
+    return table.assign(level=np.exp(y - alpha * x), lever=np.exp(x))
+
+
+def findings(tables):
+    """Values of the slots of a document on the studies.
+
+    Parameters
+    ----------
+    tables : dict of str to pandas.DataFrame
+        As `studies` makes them.
+
+    Returns
+    -------
+    dict
+        ``STUDY.TYPE MARK``, ``all`` for all types together; ``dmt`` also by material, as in ``dmt.q-S BAM1
+        omega_mass_75``. ``printed.TYPE MARK table 3`` is over Eq. 33 with the printed Table 3.
+
+        For other monomers also ``scaled k`` behind the mark, the same for omega sqrt(<a^k>^(1/k)), which Eq. 33 has at
+        the same N_con and phi; ``law k``, see `carried_over`, with the exponent ``law.TYPE MARK alpha k``; and ratios
+        of ``n_monomers``, ``n_contacts``, ``filling_factor`` and ``radius k``.
+
+        ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
+        how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` the mean radius with the least
+        of these.
+    """
+    ensemble = tables[ENSEMBLE]
+    values = _same(DMT, tables[DMT], ensemble)
+    for material in tables[DMT]["material"].unique():
+        part = tables[DMT][tables[DMT]["material"] == material]
+        values |= _same(f"{DMT}.{material}", part, ensemble, sign=" ")
+    values |= _same(PRINTED, tables[PRINTED], tables["literal"])
+    values |= _over_table_3(tables[PRINTED])
+    for name in OTHER_MONOMERS:
+        values |= _other(name, tables[name], ensemble)
+    return values | _equal(tables, values)
+
+
+def _parts(table):
+    """Grains of each type, and of all."""
+    yield "all", table
+    for kind in TYPES:
+        yield kind, table[table["type"] == kind]
+
+
+def _same(name, table, beside, sign="."):
+    """Slots of a study with grains of the ensemble."""
+    pairs = paired(table, beside)
+    values = {f"{name}{sign}grains": len(pairs)}
+    for kind, part in _parts(pairs):
+        for mark in MARKS:
+            found = median_of(part[f"{mark}_ratio"])
+            values[f"{name}{sign}{kind} {mark}"] = Measured(found["median"], found["error"])
+    return values
+
+
+def _over_table_3(table):
+    """Slots of the printed equations over the printed law."""
+    law = eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS)
+    values = {}
+    for kind, part in _parts(table):
+        for mark in MARKS:
+            found = median_of(part[mark] / law[part.index])
+            values[f"{PRINTED}.{kind} {mark} table 3"] = Measured(found["median"], found["error"])
+    return values
+
+
+def _scaled(table):
+    """A table with marks times the root of each mean radius."""
+    return table.assign(
+        **{f"{mark} scaled {k}": table[mark] * np.sqrt(table[f"radius_{k}"]) for mark in MARKS for k in POWERS}
+    )
+
+
+def _other(name, table, ensemble):
+    """Slots of a study with other monomers."""
+    table, ensemble = _scaled(table), _scaled(ensemble)
+    columns = {mark: mark for mark in ("n_monomers", "n_contacts", "filling_factor", *MARKS)}
+    columns |= {f"radius {k}": f"radius_{k}" for k in POWERS}
+    columns |= {f"{mark} scaled {k}": f"{mark} scaled {k}" for mark in MARKS for k in POWERS}
+    values = {f"{name}.grains": len(table)}
+    for kind, part in _parts(table):
+        for slot, column in columns.items():
+            values[f"{name}.{kind} {slot}"] = cell_ratio(part, ensemble, column)
+    for mark in MARKS:
+        for k in POWERS:
+            for kind in TYPES:
+                own = (each[each["type"] == kind] for each in (table, ensemble))
+                values[f"{name}.{kind} {mark} law {k}"], alpha = carried_over(*own, mark, k)
+                values[f"law.{kind} {mark} alpha {k}"] = alpha
+    return values
+
+
+def _equal(tables, values):
+    """Slots of both studies of equal monomers together."""
+    found = {}
+    small, large = (tables[name] for name in EQUAL)
+    for kind, part in _parts(large):
+        span = np.log(cell_ratio(part, small, "radius_1").value)
+        for mark in MARKS:
+            ratio = cell_ratio(part, small, mark)
+            exponent = Measured(np.log(ratio.value) / span, ratio.error / ratio.value / span)
+            found[f"equal.{kind} {mark} exponent"] = exponent
+    for mark in MARKS:
+        off = {}
+        for k in POWERS:
+            ratios = [values[f"{name}.{kind} {mark} law {k}"] for name in EQUAL for kind in TYPES]
+            off[k] = sum((np.log(ratio.value) * ratio.value / ratio.error) ** 2 for ratio in ratios)
+            found[f"equal.{mark} chi2 {k}"] = float(off[k])
+        found[f"equal.{mark} mean"] = POWERS[min(off, key=off.get)]
+    return found
