@@ -8,6 +8,7 @@ from ratd.aggregates.growth import grain_radii, grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
 from ratd.experiments.spin_up.eq33 import eq33_omega
+from ratd.experiments.spin_up.grain_table import read_spun_up
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.studies import (
     DATA,
@@ -15,32 +16,31 @@ from ratd.experiments.spin_up.studies import (
     cell_ratio,
     findings,
     paired,
-    read_study,
-    same_omega,
     studies,
+    with_radii,
 )
 from ratd.pipeline.documents import Measured
 from tiny_pipeline import ROOT
 
 TYPES = {"BA": 1.0, "BAM1": 2.0, "BAM2": 4.0}
 SIZES = (100e-9, 200e-9, 300e-9)
-POWER = -0.7
-"""Of the radius of the monomers, in the omega of the made-up grains."""
+ALPHA = -0.2
+"""Exponent of Eq. 33 for the made-up grains, with <a_mon> the second of the means."""
 MEANS = {1: 30e-9, 2: 35e-9, 3: 41e-9}
 
 
 def made_up(seeds, *, factor=1.0, scatter=0.1, radius=None, materials=("q-S",), start=0, rng=None):
-    """Grains with omega ~ type, a_eff^-1 and the factor, with scatter in ln omega."""
+    """Grains that follow Eq. 33, times a factor, with scatter in ln omega."""
     rng = np.random.default_rng(start) if rng is None else rng
     rows = []
     for material in materials:
         for kind, strength in TYPES.items():
             for size in SIZES:
                 for seed in range(seeds):
-                    omega = factor * 1e8 * strength * (1e-7 / size) * np.exp(scatter * rng.normal())
-                    marks = {name: k * omega for name, k in zip(MARKS, (0.5, 1.0, 1.2), strict=True)}
                     means = MEANS if radius is None else dict.fromkeys(MEANS, radius)
-                    number = (size / means[3]) ** 3
+                    number = (size / means[3]) ** 3 * np.exp(3 * scatter * rng.normal())
+                    omega = strength / size * means[2] ** -0.5 * number**ALPHA * factor * np.exp(scatter * rng.normal())
+                    marks = {name: k * omega for name, k in zip(MARKS, (0.5, 1.0, 1.2), strict=True)}
                     rows.append(
                         {"material": material, "type": kind, "a_eff": size * (1 + 1e-15 * seed), "seed": seed, **marks}
                         | {"n_monomers": number, "n_contacts": 2 * number, "filling_factor": 0.3}
@@ -56,10 +56,7 @@ def tables():
     dmt = ensemble[ensemble["seed"] < 6].copy().reset_index(drop=True)
     dmt[list(MARKS)] *= 1.15
     dmt.loc[0, list(MARKS)] *= 10.0
-    equal = {
-        f"equal_{nm}nm": made_up(40, radius=radius, factor=(radius / MEANS[2]) ** POWER, start=nm)
-        for nm, radius in ((30, 30e-9), (41, 41e-9))
-    }
+    equal = {f"equal_{nm}nm": made_up(40, radius=nm * 1e-9, start=nm) for nm in (30, 41)}
     literal = made_up(4, factor=5.0)
     printed = literal.copy()
     printed[list(MARKS)] *= 0.9
@@ -118,7 +115,7 @@ def test_the_error_is_the_scatter_of_repeated_studies():
     beside = made_up(50, rng=rng)
     found = [cell_ratio(made_up(6, rng=rng), beside, "omega_disr") for _ in range(200)]
     values, errors = np.array(found).T
-    # the scatter of `beside`, which is the same each time, is 6/56 of the square
+    # less the scatter of `beside`, which is the same each time: 6/56 of the square
     assert np.std(values, ddof=1) == pytest.approx(errors.mean() * np.sqrt(50 / 56), rel=0.12)
 
 
@@ -136,29 +133,32 @@ def test_scaling_by_a_mean_radius(values):
         scaled = values[f"equal_30nm.BA omega_mass_75 scaled {k}"].value
         assert scaled == pytest.approx(plain * np.sqrt(30e-9 / mean), rel=1e-12)
         assert values[f"equal_30nm.all radius {k}"].value == pytest.approx(30e-9 / mean, rel=1e-12)
-    assert values["equal_30nm.all n_monomers"].value == pytest.approx((41 / 30) ** 3, rel=1e-9)
+    number = values["equal_30nm.all n_monomers"]
+    assert number.value == pytest.approx((41 / 30) ** 3, abs=4 * number.error)
+    assert values["equal_30nm.all n_contacts"] == pytest.approx(number, rel=1e-12)
     assert values["equal_30nm.all filling_factor"].value == pytest.approx(1.0)
     assert values["second_reading.all omega_disr"].value == pytest.approx(1.05, abs=0.03)
 
 
-def test_the_radius_of_equal_monomers_that_come_apart_alike(values):
-    """The made-up law goes through the ensemble at its second mean."""
+def test_a_law_of_the_ensemble_holds_for_equal_monomers_with_the_right_mean_radius(values):
     for mark in MARKS:
-        radius, exponent = values[f"equal.all {mark} radius"], values[f"equal.all {mark} exponent"]
-        assert radius.value == pytest.approx(35.0, abs=3 * radius.error) and 0.0 < radius.error < 2.0
-        assert exponent.value == pytest.approx(POWER, abs=3 * exponent.error) and 0.0 < exponent.error < 0.2
+        for kind in TYPES:
+            alpha = values[f"law.{kind} {mark} alpha 2"]
+            assert alpha.value == pytest.approx(ALPHA, abs=4 * alpha.error) and 0.0 < alpha.error < 0.03
+            for name in ("equal_30nm", "equal_41nm"):
+                right, wrong = (values[f"{name}.{kind} {mark} law {k}"] for k in (2, 1))
+                assert right.value == pytest.approx(1.0, abs=4 * right.error) and 0.0 < right.error < 0.06
+                assert wrong.value == pytest.approx(right.value * np.sqrt(35 / 30), rel=1e-3)
         assert values[f"equal.{mark} mean"] == "<a²>^(1/2)"
+        assert values[f"equal.{mark} chi2 2"] < 20.0 < values[f"equal.{mark} chi2 1"]
 
 
-def test_same_omega_of_exact_ratios():
-    ratios = [Measured((radius / 37e-9) ** -0.5, 0.01) for radius in (30e-9, 41e-9)]
-    radius, exponent = same_omega((30e-9, 41e-9), ratios)
-    assert radius.value == pytest.approx(37e-9, rel=1e-12) and exponent.value == pytest.approx(-0.5, rel=1e-12)
-    # by trial: the first ratio a little greater
-    first, second = ratios[0].value, ratios[1]._replace(error=0.0)
-    moved, _ = same_omega((30e-9, 41e-9), [Measured(1.001 * first, 0.0), second])
-    uncertain, _ = same_omega((30e-9, 41e-9), [Measured(first, 0.001 * first), second])
-    assert abs(moved.value - radius.value) == pytest.approx(uncertain.error, rel=0.01)
+def test_how_omega_goes_with_the_radius_of_equal_monomers(values):
+    """As a^-1/2 N^alpha, where N goes as a^-3."""
+    for kind in ("all", *TYPES):
+        exponent = values[f"equal.{kind} omega_disr exponent"]
+        assert exponent.value == pytest.approx(-0.5 - 3 * ALPHA, abs=4 * exponent.error)
+        assert 0.0 < exponent.error < 0.15
 
 
 @pytest.mark.parametrize(("kind", "size"), [("BA", 100e-9), ("BAM2", 200e-9)])
@@ -169,10 +169,14 @@ def test_radii_of_a_grain_without_growing_it(kind, size):
 
 
 def test_rows_have_the_radii_of_their_own_monomers():
-    """Those of the ensemble, which come with ratd."""
-    table = read_study(ROOT / DATA / "equal_41nm" / "prescribed")
-    row = table.iloc[0]
-    assert row["radius_3"] == pytest.approx(row["a_eff"] / row["n_monomers"] ** (1 / 3), rel=1e-9)
+    """On rows that come with ratd."""
+    folder = ROOT / DATA / "equal_41nm" / "prescribed"
+    rows = read_spun_up(folder)
+    wanted = rows["seed"] < 2
+    table = with_radii(rows, folder, wanted)
+    assert (np.isfinite(table["radius_1"]) == wanted).all() and wanted.sum() == 18
+    table = table[wanted]
+    np.testing.assert_allclose(table["radius_3"], table["a_eff"] / table["n_monomers"] ** (1 / 3), rtol=1e-9)
     assert (table["radius_1"].between(38e-9, 43e-9)).all() and (table["radius_1"] <= table["radius_2"]).all()
 
 

@@ -13,8 +13,7 @@ import pandas as pd
 from ratd.aggregates.growth import grain_radii
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
-from ratd.base.statistics import mean_of, median_of
-from ratd.base.units import NM
+from ratd.base.statistics import equal_weights, mean_of, median_of, slope_error, slope_of
 from ratd.experiments.spin_up.cells import cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.grain_table import read_spun_up
@@ -23,7 +22,7 @@ from ratd.experiments.spin_up.run_files import read_table
 from ratd.pipeline import io
 from ratd.pipeline.documents import Measured
 
-__all__ = ["DATA", "MARKS", "cell_ratio", "findings", "paired", "read_study", "same_omega", "studies"]
+__all__ = ["DATA", "MARKS", "cell_ratio", "carried_over", "findings", "paired", "studies", "with_radii"]
 
 DATA = Path("docs/reproduction/data")
 ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
@@ -35,31 +34,35 @@ POWERS = {1: "<a>", 2: "<a²>^(1/2)", 3: "<a³>^(1/3)"}
 """Means of the radii of a grain's monomers that may stand for <a_mon> in Eq. 33."""
 
 
-def read_study(folder):
-    """Table of the grains of a study, with means of the radii of their monomers.
+def with_radii(table, folder, wanted=None):
+    """A table of grains with means of the radii of their monomers, which are drawn anew.
 
     Parameters
     ----------
+    table : pandas.DataFrame
+        From `read_spun_up`.
     folder : path-like
-        Of one drive, as of `read_spun_up`.
+        Where its rows are, which say how their grains were grown.
+    wanted : (n,) array_like of bool, optional
+        The grains that are to have them, all when not given.
 
     Returns
     -------
     pandas.DataFrame
-        As `read_spun_up` makes it, and for each power k of `POWERS` ``radius_k`` [m], <a^k>^(1/k) of the grain.
+        With ``radius_k`` [m], <a^k>^(1/k) of the grain, for each power k of `POWERS`.
     """
-    table = read_spun_up(folder)
     growth = {}
     for path in sorted(Path(folder).glob("*.nc")):
         own = json.loads(io.read(path, "spun_up").attrs["settings"])["growth"]
         growth[own["material"]["name"], own["type"]] = RadiusDistribution(**own["radii"])
-    radii = [
-        grain_radii(row.type, row.a_eff, row.material, int(row.seed), growth[row.material, row.type])
-        for row in table.itertuples()
-    ]
-    for k in POWERS:
-        table[f"radius_{k}"] = [np.mean(own**k) ** (1 / k) for own in radii]
-    return table
+    wanted = np.ones(len(table), dtype=bool) if wanted is None else np.asarray(wanted)
+    means = np.full((len(table), len(POWERS)), np.nan)
+    for k in np.flatnonzero(wanted):
+        row = table.iloc[k]
+        distribution = growth[row["material"], row["type"]]
+        radii = grain_radii(row["type"], row["a_eff"], row["material"], int(row["seed"]), distribution)
+        means[k] = [np.mean(radii**power) ** (1 / power) for power in POWERS]
+    return table.assign(**{f"radius_{power}": means[:, k] for k, power in enumerate(POWERS)})
 
 
 def studies(data=DATA):
@@ -73,7 +76,9 @@ def studies(data=DATA):
     Returns
     -------
     dict of str to pandas.DataFrame
-        Name of a study -> its table; ``literal``, the grains of the ensemble with the drive literal.
+        Name of a study -> its table; those with other monomers, and grains of the ensemble of the same materials and
+        sizes, `with_radii`. ``literal``: the grains of the ensemble with this drive, of the queue where it has
+        them, else of the pipeline.
 
     Raises
     ------
@@ -88,9 +93,20 @@ def studies(data=DATA):
             raise FileError(
                 f"{folder}: holds no rows; `python -m ratd.experiments.spin_up.study --study {name}` makes them"
             )
-        found[name] = read_study(folder)
+        found[name] = read_spun_up(folder)
+        if name in OTHER_MONOMERS:
+            found[name] = with_radii(found[name], folder)
+    wanted = _in_cells_of(found[ENSEMBLE], pd.concat([found[name] for name in OTHER_MONOMERS]))
+    found[ENSEMBLE] = with_radii(found[ENSEMBLE], data / ENSEMBLE / "prescribed", wanted)
+    literal = read_table(data / "ensemble" / "literal" / "grains.nc")
     found["literal"] = read_table(data / "literal.nc")
     return found
+
+
+def _in_cells_of(table, other):
+    """Whether grains are of a material, type and size of another table, (n,) of bool."""
+    cell = cell_of(pd.concat([table, other], ignore_index=True))
+    return np.isin(cell[: len(table)], cell[len(table) :])
 
 
 def paired(table, beside):
@@ -141,33 +157,46 @@ def cell_ratio(table, beside, column):
     return Measured(ratio, ratio * float(np.hypot(error, other)))
 
 
-def same_omega(radii, ratios):
-    """Radius of equal monomers of which grains come apart as those of the ensemble do.
+def carried_over(table, beside, mark, k):
+    """A mark over what Eq. 33, with its exponent fitted to other grains, says of it.
 
     Parameters
     ----------
-    radii : (2,) array_like
-        Of the equal monomers of two studies [m].
-    ratios : (2,) sequence of Measured
-        omega of their grains over that of the ensemble.
+    table, beside : pandas.DataFrame
+        Of one type, with n_contacts, filling_factor, radius_k [m] and the mark.
+    mark : str
+    k : int
+        Of `POWERS`: <a_mon> in Eq. 33 is <a^k>^(1/k).
 
     Returns
     -------
-    radius : Measured
-        [m], on the power law through both.
-    exponent : Measured
-        p in omega ~ radius^p at a given size and type.
+    ratio : Measured
+        As `cell_ratio` of omega a_eff sqrt(<a_mon>)/(N_con phi)^alpha; 1 where the law holds for both.
+    alpha : Measured
+        Fitted to the grains of `beside` in the cells of both.
     """
-    (low, high), (near, far) = np.log(radii), ratios
-    span = high - low
-    first, second = np.log(near.value), np.log(far.value)
-    spread = [ratio.error / ratio.value for ratio in ratios]
-    rise = second - first
-    exponent = rise / span
-    radius = np.exp(low - first / exponent)
-    # both ratios are taken for independent; the scatter of the ensemble, which they share, is less than their own
-    error = radius * span * np.hypot(second * spread[0], first * spread[1]) / rise**2
-    return Measured(float(radius), float(error)), Measured(float(exponent), float(np.hypot(*spread) / abs(span)))
+    beside = beside[_in_cells_of(beside, table)]
+    x, y = _law(beside, mark, k)
+    there = np.isfinite(x + y)
+    size = size_key(beside["a_eff"]).to_numpy()[there]
+    alpha, influence = slope_of(x[there], y[there], beside["material"].to_numpy()[there], equal_weights(size))
+    first, second = (_levelled(own, mark, k, alpha) for own in (table, beside))
+    ratio, lever = cell_ratio(first, second, "level"), np.log(cell_ratio(first, second, "lever").value)
+    alpha = Measured(alpha, slope_error(influence))
+    return Measured(ratio.value, float(np.hypot(ratio.error, ratio.value * lever * alpha.error))), alpha
+
+
+def _law(table, mark, k):
+    """ln(N_con phi) and ln(omega a_eff sqrt(<a_mon>)) of grains, (n,) each."""
+    x = np.log(table["n_contacts"] * table["filling_factor"])
+    y = np.log(table[mark] * table["a_eff"] * np.sqrt(table[f"radius_{k}"]))
+    return x.to_numpy(float), y.to_numpy(float)
+
+
+def _levelled(table, mark, k, alpha):
+    """A table with what is left of a mark beyond Eq. 33, ``level``, and N_con phi, ``lever``."""
+    x, y = _law(table, mark, k)
+    return table.assign(level=np.exp(y - alpha * x), lever=np.exp(x))
 
 
 def findings(tables):
@@ -182,11 +211,15 @@ def findings(tables):
     -------
     dict
         ``STUDY.TYPE MARK``, ``all`` for all types together; ``dmt`` also by material, as in ``dmt.q-S BAM1
-        omega_mass_75``. For other monomers also ``scaled k`` behind the mark, the same for omega sqrt(<a^k>^(1/k)),
-        which Eq. 33 has at the same N_con and phi, and ratios of ``n_monomers``, ``n_contacts``, ``filling_factor``
-        and ``radius k``. ``equal.TYPE MARK radius`` and ``exponent`` are those of `same_omega` (nm), ``equal.MARK
-        mean`` the mean radius with which Eq. 33 brings equal monomers nearest to the ensemble. ``printed.TYPE MARK
-        table 3`` is over Eq. 33 with the printed Table 3.
+        omega_mass_75``. ``printed.TYPE MARK table 3`` is over Eq. 33 with the printed Table 3.
+
+        For other monomers also ``scaled k`` behind the mark, the same for omega sqrt(<a^k>^(1/k)), which Eq. 33 has at
+        the same N_con and phi; ``law k``, see `carried_over`, with the exponent ``law.TYPE MARK alpha k``; and ratios
+        of ``n_monomers``, ``n_contacts``, ``filling_factor`` and ``radius k``.
+
+        ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
+        how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` the mean radius with the least
+        of these.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -246,21 +279,30 @@ def _other(name, table, ensemble):
     for kind, part in _parts(table):
         for slot, column in columns.items():
             values[f"{name}.{kind} {slot}"] = cell_ratio(part, ensemble, column)
+    for mark in MARKS:
+        for k in POWERS:
+            for kind in TYPES:
+                own = (each[each["type"] == kind] for each in (table, ensemble))
+                values[f"{name}.{kind} {mark} law {k}"], alpha = carried_over(*own, mark, k)
+                values[f"law.{kind} {mark} alpha {k}"] = alpha
     return values
 
 
 def _equal(tables, values):
     """Slots of both studies of equal monomers together."""
     found = {}
-    radii = [tables[name]["radius_1"].mean() for name in EQUAL]
-    for mark in MARKS:
-        for kind in ("all", *TYPES):
-            radius, exponent = same_omega(radii, [values[f"{name}.{kind} {mark}"] for name in EQUAL])
-            found[f"equal.{kind} {mark} radius"] = Measured(radius.value / NM, radius.error / NM)
+    small, large = (tables[name] for name in EQUAL)
+    for kind, part in _parts(large):
+        span = np.log(cell_ratio(part, small, "radius_1").value)
+        for mark in MARKS:
+            ratio = cell_ratio(part, small, mark)
+            exponent = Measured(np.log(ratio.value) / span, ratio.error / ratio.value / span)
             found[f"equal.{kind} {mark} exponent"] = exponent
-        off = {
-            k: sum(np.log(values[f"{name}.{kind} {mark} scaled {k}"].value) ** 2 for name in EQUAL for kind in TYPES)
-            for k in POWERS
-        }
+    for mark in MARKS:
+        off = {}
+        for k in POWERS:
+            ratios = [values[f"{name}.{kind} {mark} law {k}"] for name in EQUAL for kind in TYPES]
+            off[k] = sum((np.log(ratio.value) * ratio.value / ratio.error) ** 2 for ratio in ratios)
+            found[f"equal.{mark} chi2 {k}"] = float(off[k])
         found[f"equal.{mark} mean"] = POWERS[min(off, key=off.get)]
     return found
