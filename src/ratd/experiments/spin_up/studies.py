@@ -77,8 +77,7 @@ def studies(data=DATA):
     -------
     dict of str to pandas.DataFrame
         Name of a study -> its table; those with other monomers, and grains of the ensemble of the same materials and
-        sizes, `with_radii`. ``literal``: the grains of the ensemble with this drive, of the queue where it has
-        them, else of the pipeline.
+        sizes, `with_radii`. ``literal``: the grains with the printed terms of the frame.
 
     Raises
     ------
@@ -98,7 +97,6 @@ def studies(data=DATA):
             found[name] = with_radii(found[name], folder)
     wanted = _in_cells_of(found[ENSEMBLE], pd.concat([found[name] for name in OTHER_MONOMERS]))
     found[ENSEMBLE] = with_radii(found[ENSEMBLE], data / ENSEMBLE / "prescribed", wanted)
-    literal = read_table(data / "ensemble" / "literal" / "grains.nc")
     found["literal"] = read_table(data / "literal.nc")
     return found
 
