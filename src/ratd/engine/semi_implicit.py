@@ -185,7 +185,9 @@ def _renewed(state, work):
     return fresh
 
 
-@jit
+# Inlined, so that there is one compiled version of it: a process that compiles the time loop would else call another
+# one than a process that loads it, which rounds differently.
+@jit(forceinline=True)
 def make_matrix(state, law, box, theta, dt, work):
     """Make M' and factorise it.
 

@@ -32,7 +32,6 @@ from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import plan as plans
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.pulled import AXES, KIND, VARIANTS, WAYS, outer_radius
-from ratd.experiments.spin_up.study import CONFIG
 from ratd.geometry.shape import principal_axes
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
@@ -40,6 +39,7 @@ from ratd.validation.by_ends import HELD, lever, pull_by_ends
 
 __all__ = ["BOX", "DATA", "ENDS", "by_its_ends", "in_the_box", "main", "pulled", "tasks"]
 
+CONFIG = ("config/config.yaml", "config/spin_up.yaml")
 DATA = "docs/reproduction/data/pulled"
 MATERIALS = ("q-S", "a-C")
 TYPES = ("BA", "BAM1", "BAM2")

@@ -78,6 +78,7 @@ def of_drive(letter, table):
     """
     values = {f"{letter}.n": len(table), f"{letter}.seeds": int(table.groupby(cell_of(table)).size().median())}
     values[f"{letter}.unfinished"] = int((~table["omega_disr"].notna()).sum())
+    values[f"{letter}.no quarter"] = int(table[MARK].isna().sum())
     ratio = table[MARK] / table["printed"]
     values[f"{letter}.ratio"] = median(ratio, cell_of(table))
     values[f"{letter}.ratio middle"] = middle(ratio)
