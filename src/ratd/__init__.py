@@ -24,6 +24,7 @@ _HOME = {
     "FileError": "base.errors",
     "MATERIALS": "base.materials",
     "Material": "base.materials",
+    "LongSteps": "experiments.compression.steps",
     "compress": "experiments.compression.run",
     "compressive_strength": "experiments.compression.strength",
     "build_cluster": "aggregates.packed_clusters",

@@ -11,7 +11,7 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import RUNG, _work, make_matrix, rung_below, semi_implicit, weigh
 from ratd.engine.state import contact_field, copied, monomer_rows, new_state
 from ratd.engine.step import run, until
-from ratd.geometry.box import open_space, touching_pairs
+from ratd.geometry.box import open_space, periodic, touching_pairs
 from ratd.laws import jkr
 from ratd.laws.contact_fields import LANES, NCX, NCY, NCZ
 from ratd.laws.jkr_with_springs import NIX, NJX
@@ -92,7 +92,7 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts(angle):
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     pulls = rng.normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    weigh(state, 0.0, work)
+    weigh(state, 0.0, dt, work)
     expected = np.linalg.solve(dense_matrix(state, theta, dt), pulls.ravel()).reshape(N, 6)
     np.testing.assert_allclose(force[:, 0:3] / rows[:, MASS, None], expected[:, :3], rtol=1e-7)
     inertia = 0.4 * rows[:, MASS] * rows[:, RADIUS] ** 2
@@ -111,9 +111,25 @@ def test_rigid_motion_has_its_true_mass_and_is_not_calmed(angle):
     rows[:, WX : WX + 3] = turn
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     force[:] = 0.0
-    weigh(state, 1e9, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
+    weigh(state, 1e9, 1e-10, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
+
+
+@pytest.mark.parametrize("rate", [-3e3, (5e3, 0.0, -2e3)])
+def test_rigid_motion_is_not_calmed_in_a_box_that_changes(rate):
+    state = rolled(cluster())
+    box = periodic(1e-6, rate)
+    work = _work(state)
+    make_matrix(state, LAW, box, 0.5, 1e-10, work)
+    rows = monomer_rows(state)
+    rows[:, VX : VX + 3] = -np.array(box.rates()) * rows[:, X : X + 3]  # peculiar: at rest in space
+    force = state.force.reshape(-1, FORCE_ROW)[:N]
+    force[:] = 0.0
+    weigh(state, 1e9, 1e-10, work)
+    limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
+    assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
+    assert (np.abs(force[:, 4:7]) < 1e-8 * limit * rows[:, RADIUS, None]).all()
 
 
 @pytest.mark.parametrize("calming", [0.0, 0.2])

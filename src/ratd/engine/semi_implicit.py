@@ -18,7 +18,7 @@ from ratd.engine.block_factor import BLOCK, PADDED, BlockFactor, factorise, find
 from ratd.engine.contacts import contact_start, difference, get_image
 from ratd.engine.forces import contact_forces
 from ratd.engine.layout import (
-    CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, MASS, MONOMERS, RADIUS, ROW, STEPS,
+    CONTACTS, DT, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, LOST_DAMP, MASS, MONOMERS, RADIUS, ROW, STEPS,
     STRETCH, TIME, TORQUE_X, VX, WX,
 )  # fmt: skip
 from ratd.engine.leapfrog import SAMPLE_EVERY
@@ -47,6 +47,8 @@ class Work(NamedTuple):
         Number of the block of each contact, and whether its rows are those of i: twice the number plus 0 or 1.
     x : (8 n,) float64
         The right-hand side, and the solution.
+    strain : (8 n,) float64
+        What M' - M makes of the motion of the box: sum J^T (theta dt^2 K + dt C) H d over the contacts [kg m/s].
     made : (2,) float64
         Step [s] for which the matrix was made, 0 when it has to be made anew; angle [rad] by which a contact may have
         turned since.
@@ -57,6 +59,7 @@ class Work(NamedTuple):
     factor: BlockFactor
     block: np.ndarray
     x: np.ndarray
+    strain: np.ndarray
     made: np.ndarray
     count: np.ndarray
 
@@ -119,7 +122,7 @@ class SemiImplicit(NamedTuple):
         held = max(dt, scalar[DT_DRIFT])
         if work.made[0] != held or work.made[1] > TURNED:
             make_matrix(state, law, box, self.theta, held, work)
-        weigh(state, self.calming / kick, work)
+        scalar[LOST_DAMP] += weigh(state, self.calming / kick, kick, work)
         drive.move(state, box, kick, dt)
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
@@ -157,7 +160,7 @@ def _work(state):
     factor = order_blocks(n, state.pair_i, state.pair_j, contacts)
     block = np.empty(contacts, dtype=np.int64)
     _find_blocks(state, factor, block)
-    return Work(factor, block, np.zeros(PADDED * n), np.zeros(2), np.zeros(1, dtype=np.int64))
+    return Work(factor, block, np.zeros(PADDED * n), np.zeros(PADDED * n), np.zeros(2), np.zeros(1, dtype=np.int64))
 
 
 @jit
@@ -179,7 +182,7 @@ def _renewed(state, work):
         block = np.empty(contacts, dtype=np.int64)
         if _find_blocks(state, work.factor, block):
             work.made[0] = 0.0
-            return Work(work.factor, block, work.x, work.made, work.count)
+            return Work(work.factor, block, work.x, work.strain, work.made, work.count)
     fresh = _work(state)
     fresh.count[:] = work.count
     return fresh
@@ -207,9 +210,13 @@ def make_matrix(state, law, box, theta, dt, work):
     rigid motion has g = 0 (`arms`). After rolling the arms are not along n, and a contact that twists slides as well.
     Taken along n they would tell the step too little stiffness: a grain that has rolled by more than about r_0 would
     never come to rest.
+
+    In a box that changes with H the velocities are peculiar, and the points recede by H d as well. M' needs it not,
+    but calming does: else it would slow down rigid bodies, which move against the box.
     """
-    factor = work.factor
+    factor, strain = work.factor, work.strain
     diagonal, lower = factor.diagonal, factor.lower
+    strain[:] = 0.0
     diagonal[:] = 0.0
     lower[:] = 0.0
     for i in range(state.counter[MONOMERS]):
@@ -219,6 +226,7 @@ def make_matrix(state, law, box, theta, dt, work):
             diagonal[at + (PADDED + 1) * c] = m
             diagonal[at + (PADDED + 1) * (c + 3)] = SPHERE * m
     edges = box.edges(state.scalar)
+    hx, hy, hz = box.rates()
     weight = theta * dt * dt
     block = np.empty((6, 6))
     for k in range(state.counter[CONTACTS]):
@@ -227,7 +235,7 @@ def make_matrix(state, law, box, theta, dt, work):
         n = (state.contact[at + NCX], state.contact[at + NCY], state.contact[at + NCZ])
         a_i = state.monomer[np.uint64(i) * _ROW + RADIUS]
         a_j = state.monomer[np.uint64(j) * _ROW + RADIUS]
-        distance = difference(state, edges, i, j, get_image(state, k))[3]
+        dx, dy, dz, distance = difference(state, edges, i, j, get_image(state, k))
         p_i, p_j = law.pointers(state.contact, at)
         arm_i, arm_j = arms(n, a_i, p_i, a_j, p_j, distance)
         k_n, k_s, k_r, k_t = law.stiffness(state.contact, at)
@@ -239,6 +247,9 @@ def make_matrix(state, law, box, theta, dt, work):
         _add_block(diagonal, BLOCK * factor.place[j], block, False)
         _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm_i, arm_j)
         _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
+        recede = (hx * dx, hy * dy, hz * dz)
+        _add_strain(strain, PADDED * factor.place[i], recede, n, k_n, k_s, 1.0, arm_i)
+        _add_strain(strain, PADDED * factor.place[j], recede, n, k_n, k_s, -1.0, arm_j)
     if not factorise(factor):
         state.scalar[FASTEST] = math.nan
     work.made[0], work.made[1] = dt, 0.0
@@ -307,6 +318,21 @@ def _blocks(block, n, k_n, k_s, k_r, k_t, sign_i, sign_j, arm_i, arm_j):
 
 
 @jit(forceinline=True)
+def _add_strain(target, at, recede, n, k_n, k_s, sign, arm):
+    """J^T K H d of one contact, rows of one of its monomers, from the velocity H d at which its points recede."""
+    along = n[0] * recede[0] + n[1] * recede[1] + n[2] * recede[2]
+    slide = (
+        k_s * (recede[0] - along * n[0]),
+        k_s * (recede[1] - along * n[1]),
+        k_s * (recede[2] - along * n[2]),
+    )
+    moment = _cross(slide, arm)
+    for c in range(3):
+        target[at + c] += sign * (k_n * along * n[c] + slide[c])
+        target[at + 3 + c] += moment[c]
+
+
+@jit(forceinline=True)
 def _cross(a, b):
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
@@ -323,12 +349,19 @@ def _add_block(target, at, block, transposed):
 
 
 @jit
-def weigh(state, rate, work):
-    """Turn the forces F into M (M'^-1 (F + rate M v) - rate v), which moves monomers of their true mass as M' says.
+def weigh(state, rate, kick, work):
+    """Turn the forces F into M (M'^-1 (F + rate (M v - s)) - rate v), which moves monomers of true mass as M' says.
 
-    The terms with the rate [1/s] take stiff motion away and leave soft motion, for which M'^-1 M v is v.
+    The terms with the rate [1/s] take stiff motion away and leave soft motion, for which M'^-1 (M v - s) is v. s is the
+    `strain` of the box.
+
+    Returns
+    -------
+    float
+        Work of the forces in the kick to come, of this duration [s], less that of what they are turned into [J]: it is
+        missing in the motion, and counts as damped.
     """
-    monomer, force, x = state.monomer, state.force, work.x
+    monomer, force, x, strain = state.monomer, state.force, work.x, work.strain
     place = work.factor.place
     n = state.counter[MONOMERS]
     for k in range(n):
@@ -341,20 +374,29 @@ def weigh(state, rate, work):
         turn = rate * SPHERE * monomer[r + MASS] * radius
         for axis in range(3):
             a = np.uint64(axis)
-            x[to + axis] = force[q + FORCE_X + a] + pull * monomer[r + VX + a]
-            x[to + 3 + axis] = force[q + TORQUE_X + a] * inv + turn * monomer[r + WX + a]
+            x[to + axis] = force[q + FORCE_X + a] + pull * monomer[r + VX + a] - rate * strain[to + axis]
+            turned = turn * monomer[r + WX + a] - rate * strain[to + 3 + axis]
+            x[to + 3 + axis] = force[q + TORQUE_X + a] * inv + turned
     solve(work.factor, x)
+    taken = 0.0
     for k in range(n):
         r = np.uint64(k) * _ROW
         q = np.uint64(k) * _FORCE_ROW
         to = PADDED * place[k]
         m = monomer[r + MASS]
         radius = monomer[r + RADIUS]
+        inv = 1.0 / radius
         spin = SPHERE * m * radius
         for axis in range(3):
             a = np.uint64(axis)
-            force[q + FORCE_X + a] = m * (x[to + axis] - rate * monomer[r + VX + a])
-            force[q + TORQUE_X + a] = spin * (x[to + 3 + axis] - rate * radius * monomer[r + WX + a])
+            v, w = monomer[r + VX + a], monomer[r + WX + a]
+            rise = x[to + axis] - rate * v
+            turn = (x[to + 3 + axis] - rate * radius * w) * inv
+            taken += (force[q + FORCE_X + a] - m * rise) * (v + 0.5 * kick * rise)
+            taken += (force[q + TORQUE_X + a] - spin * radius * turn) * (w + 0.5 * kick * turn)
+            force[q + FORCE_X + a] = m * rise
+            force[q + TORQUE_X + a] = spin * radius * turn
+    return kick * taken
 
 
 @jit

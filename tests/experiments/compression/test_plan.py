@@ -3,10 +3,9 @@
 import pytest
 
 import ratd
-from ratd.engine.leapfrog import Leapfrog
-from ratd.engine.semi_implicit import SemiImplicit
 from ratd.experiments.compression import plan as plans
-from ratd.experiments.compression.squeeze import integrator_of
+from ratd.experiments.compression.run import Cluster
+from ratd.experiments.compression.squeeze import squeezed
 from ratd.pipeline.config import load, merge
 
 PAPER = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml")
@@ -21,7 +20,7 @@ def test_configs_that_come_with_ratd_are_good(name):
     plan = plan_of(f"config/{name}.yaml")
     assert plan.results == f"results/{name}"
     for wanted in plan.sets:
-        assert plan.grow(wanted)["n"] <= 16384 and plan.compress(wanted)["strain_rate"] >= 3e-7
+        assert plan.grow(wanted)["n"] <= 16384 and plan.compress(wanted)["strain_rate"] >= 1e-7
         assert len(plan.files(plans.RUN, wanted)) == len(plan.seeds(wanted)) >= 2
 
 
@@ -46,13 +45,16 @@ def test_only_the_sets_that_a_figure_names_are_wanted():
     assert all("/tension/" in path for path in plan_of(figures=figures).tables)
 
 
-def test_the_integrator_is_chosen_in_one_place():
-    step = {"longest_t0": 3, "displacement_nm": 0.2, "travel_nm": 2, "calming": 0.1}
-    settings = plan_of(all_sets={"semi_implicit": step}).compress("fiducial")
-    chosen = integrator_of(settings, 2e-10)
-    assert isinstance(chosen, SemiImplicit) and chosen.longest == pytest.approx(6e-10) and chosen.calming == 0.1
-    explicit = integrator_of(plan_of().compress("fiducial"), 2e-10)
-    assert isinstance(explicit, Leapfrog) and explicit.timestep_factor == 0.0708
+def test_the_steps_go_from_the_config_to_the_run():
+    steps = {"longest": 3, "displacement": 0.2, "calming": 0.1, "until_phi": 0.03}
+    grain = ratd.grow_bcca(64, seed=0)
+    said = {}
+    for name, own in (("long", steps), ("explicit", None)):
+        settings = plan_of(all_sets={"long_steps": own, "until_phi": 0.05, "strain_rate": 3e-5}).compress("fiducial")
+        said[name] = squeezed(grain, settings).attrs["integrator"]
+    long, then = said["long"].split(", from phi = 0.03 on ")
+    assert long.startswith("SemiImplicit(") and f"longest={3 * Cluster(grain).time_unit!r}" in long
+    assert then == said["explicit"] and then.startswith("Leapfrog(timestep_factor=0.0708,")
 
 
 @pytest.mark.parametrize(

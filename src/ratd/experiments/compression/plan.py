@@ -139,12 +139,8 @@ class Plan:
     def compress(self, name):
         """Settings of the compression of a set."""
         own = self.of_set(name)
-        step = own["semi_implicit"]
-        if step is not None:
-            lengths = {key.removesuffix("_nm"): step[key] * NM for key in ("displacement_nm", "travel_nm")}
-            step = {"longest": step["longest_t0"], "calming": step["calming"], **lengths}
-        names = ("strain_rate", "k_n", "until_phi", "timestep_factor", "scheme", "snapshots")
-        return {key: own[key] for key in names} | {"semi_implicit": step}
+        names = ("strain_rate", "k_n", "until_phi", "timestep_factor", "long_steps", "scheme", "snapshots")
+        return {key: own[key] for key in names}
 
     def work(self, name):
         """A measure of the time that a run of a set takes: monomers over strain rate and step."""

@@ -4,8 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ratd.experiments.compression.files import read_cluster
-from ratd.experiments.compression.run import Cluster
-from ratd.experiments.compression.squeeze import integrator_of, law_of, squeezed, told
+from ratd.experiments.compression.squeeze import law_of, squeezed, told
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline.kinds import Kind, over, register
 
@@ -53,10 +52,9 @@ def pulled(grain, settings, phi, say=None):
     """
     progress = None if say is None else told(say)
     compressed = squeezed(grain, settings | {"until_phi": phi, "snapshots": []}, progress=progress)
-    integrator = integrator_of(settings, Cluster(grain).time_unit)
     own = settings["pull"]
-    how = {"axes": own["axes"], "law": law_of(settings), "integrator": integrator, "progress": progress}
-    run = stretch(compressed, own["strain_rate"], **how)
+    how = {"axes": own["axes"], "law": law_of(settings), "progress": progress}
+    run = stretch(compressed, own["strain_rate"], timestep_factor=settings["timestep_factor"], **how)
     entry = {
         "phi": run.attrs["phi_start"],
         "strain_rate": run.attrs["strain_rate"],

@@ -9,7 +9,9 @@ import xarray as xr
 
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
+from ratd.engine.hand_over import hand_over
 from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
+from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import State, monomer_rows
 from ratd.engine.step import run, until
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
@@ -66,7 +68,7 @@ class Parts(NamedTuple):
     integrator: object
 
 
-def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=None, stop=None, tell=None):
+def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshots=(), check=None, stop=None, tell=None):
     """Move a state on in a box that changes, and make records.
 
     Parameters
@@ -76,6 +78,8 @@ def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=
     parts : Parts
     marks : sequence of float
         Times of the records [s], ascending.
+    later : (int, part), optional
+        Number of a record, and the explicit integrator that takes the place of the semi-implicit one from it on.
     key : str
         See `ratd.engine.checkpoint.fingerprint`.
     checkpoint : path-like, optional
@@ -83,7 +87,8 @@ def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=
     snapshots : sequence of int
         Numbers of the records at which positions are kept.
     check : callable, optional
-        ``check(row)``, a dict of one record, raises where something is wrong.
+        ``check(row, before, long)``, dicts of a record and of the last one of long steps, where explicit ones have
+        followed, and whether its steps are long ones; raises where something is wrong.
     stop : callable, optional
         ``stop(rows)``: whether to end before the last mark, of the table of records, (m, columns).
     tell : callable, optional
@@ -98,6 +103,7 @@ def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=
         Positions at the snapshots [m], unwrapped, in the order of the input.
     """
     law, box, integrator = parts
+    change, explicit = (None, None) if later is None else later
     drive = squeezing()
     loaded = checkpoints.load(checkpoint, key)
     if loaded is None:
@@ -111,12 +117,18 @@ def strain(state, parts, marks, *, key=(), checkpoint=None, snapshots=(), check=
     for number in range(len(rows), len(marks) + 1):
         if stop is not None and stop(np.array(rows)):
             break
-        state, _ = run(state, law, drive, box, integrator, until(time=marks[number - 1]))
+        explicitly = change is not None and number > change
+        parts = parts._replace(integrator=explicit if explicitly else integrator)
+        state, _ = run(state, law, drive, box, parts.integrator, until(time=marks[number - 1]))
+        if number == change:
+            state = hand_over(state, law, drive, box, integrator, explicit)
+            parts = parts._replace(integrator=explicit)
         rows.append(_row(state, parts, rows))
         if number in snapshots:
             kept.append(positions(state))
         if check is not None:
-            check(as_dict(rows[-1]))
+            long = later is not None and not explicitly
+            check(as_dict(rows[-1]), as_dict(rows[change]) if explicitly else None, long)
         now = clock.monotonic()
         if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
             checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
@@ -141,8 +153,8 @@ def as_dict(row):
 
 def _row(state, parts, rows):
     """One record; starts a new mean of the pressure."""
-    law, box, _ = parts
-    now = in_step(state, law, box)
+    law, box, integrator = parts
+    now = in_step(state, law, box, kick=not isinstance(integrator, SemiImplicit))
     moving, spinning = kinetic(now, 0.0, False)
     held, gone = stored(now, law, False), dissipated(now, law)
     size = volume(state, box)

@@ -5,8 +5,10 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.drives.squeezing import squeezing
 from ratd.engine import checkpoint as checkpoints
-from ratd.engine.layout import TIME
+from ratd.engine.contacts import update_contact_rates
+from ratd.engine.layout import DT, TIME
 from ratd.engine.leapfrog import leapfrog
+from ratd.engine.state import come_to_rest
 from ratd.engine.step import run, until
 from ratd.experiments.compression.run import K_N, TIMESTEP_FACTOR
 from ratd.experiments.compression.static import box_rate
@@ -31,8 +33,16 @@ REST_STEPS = 200
 """Steps over which the pressure of the aggregate at rest is averaged."""
 
 
-def stretch(compressed, strain_rate=3e-6, *, axes="x", law=None, timestep_factor=TIMESTEP_FACTOR, integrator=None,
-            checkpoint=None, progress=None):  # fmt: skip
+def stretch(
+    compressed,
+    strain_rate=3e-6,
+    *,
+    axes="x",
+    law=None,
+    timestep_factor=TIMESTEP_FACTOR,
+    checkpoint=None,
+    progress=None,
+):
     """Let a compressed aggregate come to rest in its box, and pull it apart.
 
     Parameters
@@ -43,7 +53,7 @@ def stretch(compressed, strain_rate=3e-6, *, axes="x", law=None, timestep_factor
         The box grows with dL/dt = 2 C_v L/t_0.
     axes : {"x", "xyz"}
         Axes along which it grows; the others stay.
-    law, timestep_factor, integrator, checkpoint
+    law, timestep_factor, checkpoint
         As of `ratd.compress`; the law has to be that of the compression.
     progress : callable, optional
         Called every few seconds as ``progress(phi, tension, seconds_to_go)``.
@@ -73,7 +83,7 @@ def stretch(compressed, strain_rate=3e-6, *, axes="x", law=None, timestep_factor
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = jkr(damping="constant", constant_damping=K_N) if law is None else law
-    integrator = leapfrog(timestep_factor=timestep_factor) if integrator is None else integrator
+    integrator = leapfrog(timestep_factor=timestep_factor)
     edges = compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, compressed.attrs["time_unit"])
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
@@ -132,6 +142,10 @@ def _at_rest(state, parts):
     The first record of the run then has the mean pressure of the last `REST_STEPS`.
     """
     state.scalar[TIME] = 0.0
+    # the compression may have taken other steps
+    come_to_rest(state)
+    state.scalar[DT] = 0.0
+    update_contact_rates(state, parts.law, parts.integrator)
     state = find_rest(state, parts.law, squeezing(), parts.box, parts.integrator)
     start_anew(state, parts.law, parts.integrator)
     state, _ = run(state, parts.law, squeezing(), parts.box, parts.integrator, until(steps=REST_STEPS))

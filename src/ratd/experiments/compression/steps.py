@@ -1,0 +1,71 @@
+"""The steps of a compression: long ones while the aggregate is loose, explicit ones where monomers crowd."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ratd.base.errors import InputError
+from ratd.engine.leapfrog import leapfrog
+from ratd.engine.semi_implicit import semi_implicit
+from ratd.laws.contact_constants import equilibrium_compression
+
+__all__ = ["LongSteps", "integrators"]
+
+
+class LongSteps(NamedTuple):
+    """Long steps with the semi-implicit integrator, up to some filling factor.
+
+    Attributes
+    ----------
+    longest : float
+        The longest step over t_0.
+    displacement : float
+        How far a monomer may move in a step against the box, and against one in contact, over the equilibrium
+        compression delta_0 of two. Monomers that move farther meet with an overlap that costs work.
+    calming : float
+        See `ratd.engine.semi_implicit.semi_implicit`.
+    until_phi : float
+        Filling factor from which on the explicit step takes over. There each monomer touches several others, and the
+        matrix of a long step costs more than it saves.
+    """
+
+    longest: float = 30.0
+    displacement: float = 0.5
+    calming: float = 0.1
+    until_phi: float = 0.2
+
+
+def integrators(cluster, timestep_factor, long_steps):
+    """The integrators of a compression.
+
+    Parameters
+    ----------
+    cluster : ratd.experiments.compression.run.Cluster
+    timestep_factor : float
+        f of the explicit step.
+    long_steps : LongSteps or None
+
+    Returns
+    -------
+    first, explicit : parts
+        The one to begin with and the one to end with; the same where there are no long steps.
+
+    Raises
+    ------
+    InputError
+    """
+    explicit = leapfrog(timestep_factor=timestep_factor)
+    if long_steps is None:
+        return explicit, explicit
+    if not isinstance(long_steps, LongSteps):
+        raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
+    for name in ("longest", "displacement", "until_phi"):
+        value = getattr(long_steps, name)
+        if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
+            raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
+    material = cluster.grain.material
+    natural = equilibrium_compression(0.5 * cluster.radius, material.surface_energy, material.reduced_modulus)
+    displacement = long_steps.displacement * natural
+    longest = long_steps.longest * cluster.time_unit
+    how = {"displacement": displacement, "travel": displacement, "calming": long_steps.calming}
+    return semi_implicit(longest=longest, **how), explicit
