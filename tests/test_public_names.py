@@ -24,9 +24,14 @@ def arguments(function):
     plain, named = function.args.args, function.args.kwonlyargs
     defaults = [None] * (len(plain) - len(function.args.defaults)) + function.args.defaults
     return [
-        *((a.arg, "plain", d and ast.literal_eval(d)) for a, d in zip(plain, defaults, strict=True)),
-        *((a.arg, "named", d and ast.literal_eval(d)) for a, d in zip(named, function.args.kw_defaults, strict=True)),
+        *((a.arg, "plain", d and value_of(d)) for a, d in zip(plain, defaults, strict=True)),
+        *((a.arg, "named", d and value_of(d)) for a, d in zip(named, function.args.kw_defaults, strict=True)),
     ]
+
+
+def value_of(default):
+    """Value of a default, a literal or made with a public name."""
+    return eval(ast.unparse(default), {name: getattr(ratd, name) for name in ("LongSteps",)})
 
 
 def real_arguments(function):

@@ -15,6 +15,7 @@ from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError as FileError
 from ratd.base.errors import InputError as InputError
 from ratd.base.materials import Material as Material
+from ratd.experiments.compression.steps import LongSteps as LongSteps
 
 __version__: str
 MATERIALS: dict[str, Material]
@@ -47,7 +48,7 @@ def compress(
     material: str | Material | None = None,
     law: Any = None,
     timestep_factor: float = 0.14,
-    integrator: Any = None,
+    long_steps: LongSteps | None = LongSteps(),  # noqa: B008
     box_length: float | None = None,
     scheme: Literal["homogeneous", "as_printed"] = "homogeneous",
     snapshots: Sequence[float] = (0.003, 0.01, 0.03, 0.1, 0.3),
@@ -155,7 +156,6 @@ def stretch(
     axes: Literal["x", "xyz"] = "x",
     law: Any = None,
     timestep_factor: float = 0.14,
-    integrator: Any = None,
     checkpoint: str | Path | None = None,
     progress: Callable[..., object] | None = None,
 ) -> Any: ...

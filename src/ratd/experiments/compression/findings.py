@@ -31,9 +31,13 @@ from ratd.pipeline.documents import Measured
 
 __all__ = ["findings", "spun_up"]
 
-AT = (0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
+AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 WAYS = ("rolling", "twisting", "sliding", "damping")
+HIGH = "n_1024"
+"""The set that high filling factors are told of; the fiducial one need not go so far."""
+BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit", "rate": "n_4096", "slower": "n_4096"}
+"""What a set is compared with, by the beginning of its name; all others with the fiducial set."""
 
 
 def of_set(name, table):
@@ -48,10 +52,10 @@ def of_set(name, table):
     r_0 = table["monomer_radius"].item()
     found["gyration"] = Measured(root / r_0, 0.5 * error / root / r_0)
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
-    for phi in [phi for phi in AT if phi < last]:
+    for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
         found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
         found[f"scatter_{phi:g}"] = scatter_at(table, phi)
-        k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
+        k = _bin_at(table, phi)
         found[f"contacts_{phi:g}"] = float(np.mean(table["n_contacts"].values[:, k]) / found["N"])
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
         found[f"anisotropy_{phi:g}"] = float(np.mean(np.abs(anisotropy(table)[max(k - 3, 0) : k + 4])))
@@ -60,25 +64,31 @@ def of_set(name, table):
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
     exponent, at, ratio = _several(fit_power_law(table))
     found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
-    found["limit_c"], found["limit_phi"] = _several(fit_with_limit(table, high=min(0.5, last)))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
     part = np.abs(table["energy_residual"].values / table["work"].values)
-    for phi in (0.1, 0.3):
+    for phi in [phi for phi in (0.1, 0.3) if phi < last]:
         found[f"residual_{phi:g}"] = float(np.nanmax(part[:, table["phi"].values > phi]))
     for k, phi in enumerate(table["snapshot_phi"].values):
         nominal = f"{float(f'{phi:.1g}'):g}"
         found[f"slope_{nominal}"] = slope_of_structure(table, k)
         found[f"far_slope_{nominal}"] = _far_slope(table, k)
-    for phi in AT:
-        found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
-        found[f"fitted_{phi:g}"] = float(
-            found["limit_c"].value * compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value) / phi**3
-        )
+    if last > 0.4:
+        found |= _with_limit(table, min(0.5, last))
     found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
     found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
     found["tatsuuma_300"] = _solved(300.0, found["P0"])
     return {f"{name}.{key}": value for key, value in found.items()}
+
+
+def _with_limit(table, high):
+    """The fit with a greatest filling factor, and what it and the recalled formula give over P_0 phi^3."""
+    found = dict(zip(("limit_c", "limit_phi"), _several(fit_with_limit(table, high=high)), strict=True))
+    for phi in AT:
+        found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
+        fitted = compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value)
+        found[f"fitted_{phi:g}"] = float(found["limit_c"].value * fitted / phi**3)
+    return found
 
 
 def _solved(pressure, rolling_pressure):
@@ -117,6 +127,37 @@ def of_monomers(equal, tables):
         ) * (equal["monomer_radius"].item() / table["monomer_radius"].item())
         found[f"{name}.mean_over_volume"] = table["mean_radius"].item() / table["monomer_radius"].item()
     return found
+
+
+def of_steps(tables):
+    """Long steps over explicit ones, of the same clusters: pressure between the filling factors of the fit, work,
+    contacts and steps up to 0.2.
+
+    Parameters
+    ----------
+    tables : dict of str to xarray.Dataset
+        ``explicit``, and others.
+    """
+    explicit = tables["explicit"]
+    seeds = list(explicit["seed"].values)
+    phi = explicit["phi"].values
+    fitted, end = phi[(phi > FIT_RANGE[0]) & (phi < FIT_RANGE[1])], phi[[_bin_at(explicit, 0.2)]]
+    found = {}
+    for name, table in tables.items():
+        same = [seeds.index(seed) for seed in table["seed"].values]
+        for column, where in (("pressure", fitted), ("n_contacts", end), ("work", end), ("dissipated_rolling", end)):
+            own, other = (
+                each[column].values[:, [_bin_at(each, value) for value in where]].mean(axis=1)
+                for each in (table, explicit)
+            )
+            found[f"{name}.over_{column}"] = Measured(*mean_of(own / other[same]))
+        found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
+    return found
+
+
+def _bin_at(table, phi):
+    """Number of the bin of a filling factor in a table."""
+    return int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
 
 
 def of_tension(entries):
@@ -200,16 +241,19 @@ def of_lammps(table):
 def verdicts(values, sets):
     """Words on which sentences of the document rest."""
     found = {}
-    for phi in (0.05, 0.1, 0.3):
-        ratio = values[f"fiducial.ratio_{phi:g}"].value
-        found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
+    for name, phi in (("fiducial", 0.01), ("fiducial", 0.03), ("fiducial", 0.05), ("fiducial", 0.1), (HIGH, 0.3)):
+        if f"{name}.ratio_{phi:g}" in values:
+            ratio = values[f"{name}.ratio_{phi:g}"].value
+            found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
     exponent = values["fiducial.exponent"]
     found["exponent"] = "agrees" if abs(exponent.value - 3.0) < max(0.3, 2.0 * exponent.error) else "differs"
-    found["leader_0.1"] = max(WAYS[:3], key=lambda way: values[f"fiducial.{way}_0.1"])
-    found["leader_0.48"] = max(WAYS[:3], key=lambda way: values[f"fiducial.{way}_0.48"])
+    for name, phi in (("fiducial", 0.1), (HIGH, 0.48)):
+        if f"{name}.rolling_{phi:g}" in values:
+            found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"])
     for name in sets:
-        if name != "fiducial":
-            found[f"{name}.same"] = "agrees" if _same(values, name) else "differs"
+        beside = next((other for start, other in BESIDE.items() if name.startswith(start)), "fiducial")
+        if name != beside and beside in sets:
+            found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "does not depend" if alike else "depends"
@@ -218,9 +262,9 @@ def verdicts(values, sets):
     return found
 
 
-def _same(values, name):
-    """Whether the mean ratio in the range of the fit is that of the fiducial set, within 15 % and two errors."""
-    own, other = values[f"{name}.ratio"], values["fiducial.ratio"]
+def _same(values, name, beside):
+    """Whether the mean ratio in the range of the fit is that of another set, within 15 % and two errors."""
+    own, other = values[f"{name}.ratio"], values[f"{beside}.ratio"]
     return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
 
 
@@ -243,9 +287,13 @@ def findings(sets, entries, spun, lammps=None):
     for name, table in sets.items():
         values |= of_set(name, table)
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
-    values |= of_monomers(sets["fiducial"], unequal)
-    if "xi_2" in sets and "xi_32" in sets:
-        values["xi_p48_8"] = 4.0 * values["fiducial.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
+    values |= of_monomers(sets.get("equal", sets["fiducial"]), unequal)
+    if "explicit" in sets:
+        values |= of_steps(
+            {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}
+        )
+    if {HIGH, "xi_2", "xi_32"} <= set(sets):
+        values["xi_p48_8"] = 4.0 * values[f"{HIGH}.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
         values["xi_p48_32"] = 16.0 * values["xi_32.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
