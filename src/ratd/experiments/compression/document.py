@@ -29,6 +29,8 @@ DOCUMENT = Path("docs/compression.md")
 CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/compression_default.yaml")
 SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
+PEER = Path("docs/validation/data/compression.nc")
+"""What LAMMPS found, taken there by ``python -m ratd.validation.page collect``."""
 
 
 def collect(results, data=DATA):
@@ -55,7 +57,7 @@ def collect(results, data=DATA):
         io.write(data / "tension.nc", read_pulls(pulls), "tension_set")
 
 
-def read_data(data=DATA, spun=SPUN):
+def read_data(data=DATA, spun=SPUN, peer=PEER):
     """The data beside the document.
 
     Returns
@@ -75,8 +77,7 @@ def read_data(data=DATA, spun=SPUN):
     tension = data / "tension.nc"
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
-    peer = data / "lammps.nc"
-    lammps = io.read(peer, "validation_compression").to_dataframe() if peer.is_file() else None
+    lammps = io.read(peer, "validation_compression").to_dataframe() if Path(peer).is_file() else None
     return sets, entries, grains, lammps
 
 
@@ -92,7 +93,7 @@ def redraw(folder=".", into=None):
     """
     folder = Path(folder)
     into = folder if into is None else Path(into)
-    sets, entries, grains, lammps = read_data(folder / DATA, folder / SPUN)
+    sets, entries, grains, lammps = read_data(folder / DATA, folder / SPUN, folder / PEER)
     plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
     for name in plan.figures:
         figure = draw(name, plan, sets, entries, grains, folder / DATA)

@@ -1,18 +1,27 @@
-"""The semi-implicit step beside the explicit one."""
+"""Long steps beside explicit ones."""
 
-from ratd.experiments.compression.figures.common import pressures, read_sets, strain_text
+import re
+
+from ratd.experiments.compression.figures.common import pressures, read_sets, seeds_text, strain_text
 from ratd.pictures.style import styled
+
+
+def longest_step(table):
+    """The longest step of a set over t_0; None where all are explicit."""
+    found = re.match(r"SemiImplicit\(longest=([0-9.e+-]+)", table.attrs["integrator"])
+    return None if found is None else float(found[1]) / table["time_unit"].item()
 
 
 @styled
 def fewer_steps(tables):
-    """Mean pressures of sets with the explicit and the semi-implicit step, and how many steps they took."""
+    """Mean pressures of sets that differ in their steps, and how many these are."""
     labels = []
     for table in tables:
-        name = "explicit" if table.attrs["integrator"].startswith("Leapfrog") else "semi-implicit"
-        steps = float(table["steps"].mean())
-        labels.append(f"{name}, {strain_text(table)}, {steps / 1e6:.2g} million steps")
-    return pressures(tables, labels, f"{tables[0].attrs['material']}, N = {tables[0]['n_monomers'].item()}")
+        longest = longest_step(table)
+        name = "explicit" if longest is None else rf"at most {longest:.0f} $t_0$"
+        labels.append(f"{name}, {float(table['steps'].mean()) / 1e3:,.0f} thousand steps")
+    about = f"{tables[0].attrs['material']}, {seeds_text(tables[0])}, {strain_text(tables[0])}"
+    return pressures(tables, labels, about)
 
 
 def draw(files, settings):
