@@ -16,6 +16,7 @@ from ratd.experiments.compression.figures.tension import in_units
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
+    NEAR,
     anisotropy,
     fit_power_law,
     fit_with_limit,
@@ -36,7 +37,7 @@ AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 WAYS = ("rolling", "twisting", "sliding", "damping")
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
-BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit", "rate": "n_4096", "slower": "n_4096"}
+BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the fiducial set."""
 
 
@@ -62,8 +63,9 @@ def of_set(name, table):
         for way in WAYS:
             found[f"{way}_{phi:g}"] = share_at(table, way, phi)
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
-    exponent, at, ratio = _several(fit_power_law(table))
-    found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
+    if last * NEAR > FIT_RANGE[1]:
+        exponent, at, ratio = _several(fit_power_law(table))
+        found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
     part = np.abs(table["energy_residual"].values / table["work"].values)
@@ -252,7 +254,7 @@ def verdicts(values, sets):
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"])
     for name in sets:
         beside = next((other for start, other in BESIDE.items() if name.startswith(start)), "fiducial")
-        if name != beside and beside in sets:
+        if name != beside and {f"{name}.ratio", f"{beside}.ratio"} <= set(values):
             found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
