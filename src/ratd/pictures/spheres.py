@@ -75,7 +75,7 @@ def render(position, radius, colour, half_width, pixels=360):
 
 
 def _seen(position, radius, centre):
-    """Which sphere is seen in each pixel, -1 for none, and how bright it is there, (n, n) each, the first row at the top.
+    """Which sphere is seen in each pixel, -1 for none, and how bright it is there: (n, n) each, row 0 at the top.
 
     `centre` (n,) are the places of the pixels along both axes.
     """

@@ -157,6 +157,7 @@ def surviving(
         If a material or type that was spun up has too few grown grains for a law, or a strength is not above 0.
     """
     table = as_frame(table, "surviving", ("material", "type", "a_eff", mark))
+    strengths = np.atleast_1d(np.asarray(strengths, dtype=float))
     laws = size_law(table, mark, materials).set_index("type")
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
@@ -172,10 +173,8 @@ def surviving(
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
             for which, (omega, spread) in candidates.items():
-                for strength in np.atleast_1d(np.asarray(strengths, dtype=float)):
-                    given = strength, around, ratio, coefficient
-                    row = {"material": name, "type": kind, "law": which, "strength": float(strength)}
-                    rows.append(row | _sizes(omega, spread, *given))
+                found = _sizes(omega, spread, strengths, around, ratio, coefficient)
+                rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
 
 
@@ -209,19 +208,24 @@ def limits(table, grown, strengths=(1.0, 1e2, 1e4), **options):
     return values
 
 
-def _sizes(omega, spread, *given):
-    """Numbers of a row of `surviving` for the best law and the drawn ones."""
-    smallest, greatest = (float(size) for size in destroyed_sizes(omega, *given))
-    row = {"a_disr": smallest, "a_disr_error": np.nan, "low": np.nan, "high": np.nan, "greatest": greatest}
-    share = float(np.isfinite(smallest))
-    if spread is not None:
-        drawn = destroyed_sizes(spread, *given)[0]
-        share = float(np.isfinite(drawn).mean())
-        drawn = drawn[np.isfinite(drawn)]
-        if np.isfinite(smallest) and len(drawn) > 1:
-            row["a_disr_error"] = float(np.std(drawn, ddof=1))
-            row["low"], row["high"] = (float(size) for size in np.quantile(drawn, [0.16, 0.84]))
-    return row | {"share": share, "extrapolated": bool(np.isfinite(smallest) and is_extrapolated(smallest))}
+def _sizes(omega, spread, strengths, *given):
+    """Numbers of the rows of `surviving` for the best law and the drawn ones, a dict a strength."""
+    ends = destroyed_sizes(omega, strengths, *given)
+    several = [None] * len(strengths) if spread is None else destroyed_sizes(spread, strengths, *given)[0]
+    rows = []
+    for strength, smallest, greatest, drawn in zip(
+        strengths.tolist(), *(end.tolist() for end in ends), several, strict=True
+    ):
+        row = {"strength": strength, "a_disr": smallest, "a_disr_error": np.nan, "low": np.nan, "high": np.nan}
+        row |= {"greatest": greatest, "share": float(np.isfinite(smallest))}
+        if drawn is not None:
+            row["share"] = float(np.isfinite(drawn).mean())
+            drawn = drawn[np.isfinite(drawn)]
+            if np.isfinite(smallest) and len(drawn) > 1:
+                row["a_disr_error"] = float(np.std(drawn, ddof=1))
+                row["low"], row["high"] = (float(size) for size in np.quantile(drawn, [0.16, 0.84]))
+        rows.append(row | {"extrapolated": bool(np.isfinite(smallest) and is_extrapolated(smallest))})
+    return rows
 
 
 def _cell(grown, material, kind):
