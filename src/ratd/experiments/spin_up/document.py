@@ -33,12 +33,12 @@ from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
-from ratd.experiments.spin_up.fragmentation import fragment_table, read_spun_up_fragments
-from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, read_ensemble, read_spun_up
+from ratd.experiments.spin_up.fragmentation import fragment_table, spun_up_fragments
+from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
-from ratd.experiments.spin_up.run_files import read_runs, run_row, runs
+from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
 from ratd.experiments.spin_up.surviving import limits
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
@@ -154,15 +154,16 @@ def read_data(data=DATA):
     """The data beside the document."""
     data = Path(data)
     tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
-    printed = io.read(data / "literal.nc", "table").to_pandas()
+    grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
+    ensemble = spun_up_files(data / "spun_up" / DRIVEN)
     anew = data / "spun_up" / PRINTED
     return Data(
-        grown=numbers.beside_print(io.read(data / "grown.nc", "table").to_pandas()[list(GRAIN_COLUMNS)]),
-        driven=numbers.beside_print(read_ensemble(data / "grown.nc", data / "spun_up" / DRIVEN)),
+        grown=numbers.beside_print(grown),
+        driven=numbers.beside_print(spun_up_table(ensemble, grown)),
         printed=numbers.beside_print(printed),
         recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
         fragments={
-            DRIVEN: read_spun_up_fragments(data / "spun_up" / DRIVEN),
+            DRIVEN: spun_up_fragments(ensemble),
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
         },
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
@@ -170,18 +171,20 @@ def read_data(data=DATA):
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
         pulled=pulls.read(data / "pulled"),
-        studies=beside.studies(data),
+        studies=beside.studies(data, ensemble, printed),
         lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
 
-def findings(data):
+def findings(data, fits):
     """Values of the slots of both documents.
 
     Parameters
     ----------
     data : Data
+    fits : dict of str to xarray.Dataset
+        Drive -> fit of Eq. 33 to its grains, see `redraw`.
 
     Returns
     -------
@@ -191,7 +194,7 @@ def findings(data):
     values = {}
     for letter, table, drive in (("d", data.driven, DRIVEN), ("p", data.printed, PRINTED)):
         fragments = data.fragments[drive]
-        values |= numbers.of_drive(letter, table) | numbers.of_table_3(letter, table)
+        values |= numbers.of_drive(letter, table) | numbers.of_table_3(letter, fits[drive])
         values |= claims.claims(letter, table, fragments) | claims.fragment_values(letter, fragments)
     values |= numbers.of_law(data.driven) | numbers.marks_compared(data.driven)
     values |= numbers.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
@@ -214,21 +217,18 @@ def findings(data):
     return values
 
 
-def figures(data):
-    """The figures of the document, a name and a figure each."""
+def figures(data, fits):
+    """The figures of the document, a name and a figure each, of the same as `findings`."""
     plan = load(*CONFIGS)
     for drive, table in ((DRIVEN, data.driven), (PRINTED, data.printed)):
         six, eight = plan.figure("figure6", drive), plan.figure("figure8", drive)
         yield f"figure4_{drive}", figure4(data.runs[f"figure4/{drive}"], drive=drive)
-        fit = fit_ensemble(table, PAPER_MEAN_RADIUS)
-        yield f"figure7_{drive}", figure7(table, fit, drive=drive, grown=data.grown)
+        yield f"figure7_{drive}", figure7(table, fits[drive], drive=drive, grown=data.grown)
         if drive == DRIVEN:
             yield f"figure5_{drive}", figure5(data.runs[f"figure5/{drive}"][0], drive=drive)
             yield f"figure6_{drive}", figure6(table, six["material"], six["sizes"], drive=drive)
-            yield (
-                f"figure8_{drive}",
-                figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown, fit=fit),
-            )
+            shown = eight["material"], eight["type"]
+            yield f"figure8_{drive}", figure8(table, *shown, drive=drive, grown=data.grown, fit=fits[drive])
     yield "overview", overview(data.driven, data.printed, data.firm, data.grown)
     yield "law", law(data.driven)
     yield "fragments", fragments(data.fragments[DRIVEN], drive=DRIVEN)
@@ -245,11 +245,13 @@ def redraw(folder=".", into=None):
     folder = Path(folder)
     into = folder if into is None else Path(into)
     data = read_data(folder / DATA)
-    for name, figure in figures(data):
+    tables = {DRIVEN: data.driven, PRINTED: data.printed}
+    fits = {drive: fit_ensemble(table, PAPER_MEAN_RADIUS) for drive, table in tables.items()}
+    for name, figure in figures(data, fits):
         save(figure, into / FIGURES / f"{name}.png")
     with atomic(into / DRIVEN_TABLE) as temporary:
         data.driven[list(TABLE_COLUMNS)].to_csv(temporary, index=False, float_format="%.6g")
-    values = findings(data)
+    values = findings(data, fits)
     for template, document in DOCUMENTS.items():
         text = (folder / template).read_text(encoding="utf-8")
         write_text(into / document, fill(text, values, str(template)))

@@ -14,7 +14,7 @@ from ratd.base.materials import get_material
 from ratd.base.statistics import mean_of, median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
-from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
+from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import size_law, slopes
 from ratd.pipeline.documents import Measured
@@ -151,9 +151,9 @@ def marks_compared(table):
     return values
 
 
-def of_table_3(letter, table):
-    """A and alpha of Eq. 33 fitted to the grains, mark omega_disr as in the paper, beside Table 3."""
-    fit = fit_ensemble(table, PAPER_MEAN_RADIUS).isel(mean_radius=0)
+def of_table_3(letter, fit):
+    """A and alpha of Eq. 33, fitted to the grains of a drive (`eq33.fit_ensemble`), beside Table 3."""
+    fit = fit.isel(mean_radius=0)
     values, held = {}, 0
     for (material, kind), (A, alpha) in TABLE_3.items():
         own = fit.sel(material=material, type=kind)
