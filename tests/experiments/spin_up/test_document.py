@@ -8,9 +8,9 @@ import pytest
 
 from ratd.base.errors import FileError
 from ratd.experiments.spin_up import document
-from ratd.experiments.spin_up.claims import all_of, is_above, is_below, is_within
-from ratd.experiments.spin_up.findings import geometric_mean, of_drive, strength_omega, what_contacts_hold
-from ratd.experiments.spin_up.side_findings import composition_tables, of_pairs, recomputed
+from ratd.experiments.spin_up.findings.beside import composition_tables, of_pairs, recomputed
+from ratd.experiments.spin_up.findings.claims import all_of, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings.ensemble import geometric_mean, of_drive, strength_omega, what_contacts_hold
 from ratd.pipeline.documents import Measured
 
 ROOT = Path(__file__).parents[3]

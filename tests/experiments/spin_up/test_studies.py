@@ -8,9 +8,7 @@ from ratd.aggregates.growth import grain_radii, grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
 from ratd.experiments.spin_up.eq33 import eq33_omega
-from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
-from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.studies import (
+from ratd.experiments.spin_up.findings.studies import (
     MARKS,
     cell_ratio,
     findings,
@@ -18,6 +16,8 @@ from ratd.experiments.spin_up.studies import (
     studies,
     with_radii,
 )
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.pipeline.documents import Measured
 from tiny_pipeline import ROOT
 

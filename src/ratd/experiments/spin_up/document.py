@@ -14,10 +14,8 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
-from ratd.experiments.spin_up import claims, side_findings
-from ratd.experiments.spin_up import findings as numbers
+from ratd.experiments.spin_up.findings import beside, claims, ensemble, studies
 from ratd.experiments.spin_up import pulled as pulls
-from ratd.experiments.spin_up import studies as beside
 from ratd.experiments.spin_up.eq33 import fit_ensemble
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure2 import figure2
@@ -93,7 +91,7 @@ class Data(NamedTuple):
     lammps : pandas.DataFrame
         Thresholds of both codes, from the validation.
     studies : dict
-        See `ratd.experiments.spin_up.studies.studies`.
+        See `ratd.experiments.spin_up.findings.studies.studies`.
     """
 
     grown: pd.DataFrame
@@ -155,15 +153,15 @@ def read_data(data=DATA):
     data = Path(data)
     tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
     grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
-    ensemble = spun_up_files(data / "spun_up" / DRIVEN)
+    files = spun_up_files(data / "spun_up" / DRIVEN)
     anew = data / "spun_up" / PRINTED
     return Data(
-        grown=numbers.beside_print(grown),
-        driven=numbers.beside_print(spun_up_table(ensemble, grown)),
-        printed=numbers.beside_print(printed),
+        grown=ensemble.beside_print(grown),
+        driven=ensemble.beside_print(spun_up_table(files, grown)),
+        printed=ensemble.beside_print(printed),
         recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
         fragments={
-            DRIVEN: spun_up_fragments(ensemble),
+            DRIVEN: spun_up_fragments(files),
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
         },
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
@@ -171,7 +169,7 @@ def read_data(data=DATA):
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
         pulled=pulls.read(data / "pulled"),
-        studies=beside.studies(data, ensemble, printed),
+        studies=studies.studies(data, files, printed),
         lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
@@ -194,26 +192,26 @@ def findings(data, fits):
     values = {}
     for letter, table, drive in (("d", data.driven, DRIVEN), ("p", data.printed, PRINTED)):
         fragments = data.fragments[drive]
-        values |= numbers.of_drive(letter, table) | numbers.of_table_3(letter, fits[drive])
+        values |= ensemble.of_drive(letter, table) | ensemble.of_table_3(letter, fits[drive])
         values |= claims.claims(letter, table, fragments) | claims.fragment_values(letter, fragments)
-    values |= numbers.of_law(data.driven) | numbers.marks_compared(data.driven)
-    values |= numbers.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
-    values |= side_findings.of_ways(data.tables["parameters"]) | side_findings.of_pairs(data.pairs)
-    values |= side_findings.of_formulae(data.tables["formulae"])
-    values |= side_findings.of_curve(data.driven, data.grown) | side_findings.of_prediction(data.driven)
-    values |= side_findings.composition_tables() | side_findings.of_heat()
+    values |= ensemble.of_law(data.driven) | ensemble.marks_compared(data.driven)
+    values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
+    values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
+    values |= beside.of_formulae(data.tables["formulae"])
+    values |= beside.of_curve(data.driven, data.grown) | beside.of_prediction(data.driven)
+    values |= beside.composition_tables() | beside.of_heat()
     values |= pulls.findings(data.pulled, data.driven)
     printed = load(*CONFIGS).config["literal"]
-    values |= side_findings.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
-    values |= side_findings.of_lammps(data.lammps)
-    values |= beside.findings(data.studies)
-    values |= side_findings.of_fragments(data.fragments[DRIVEN])
-    values |= limits(data.driven, data.grown, mark=numbers.MARK)
+    values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
+    values |= beside.of_lammps(data.lammps)
+    values |= studies.findings(data.studies)
+    values |= beside.of_fragments(data.fragments[DRIVEN])
+    values |= limits(data.driven, data.grown, mark=ensemble.MARK)
     if data.recomputed is not None:
-        values |= side_findings.recomputed(data.printed, data.recomputed)
-    values["cells.quarter"] = numbers.cell_medians(data.driven)
-    values["cells.disr"] = numbers.cell_medians(data.driven, "omega_disr")
-    values["cells.printed"] = numbers.cell_medians(data.printed, "omega_disr")
+        values |= beside.recomputed(data.printed, data.recomputed)
+    values["cells.quarter"] = ensemble.cell_medians(data.driven)
+    values["cells.disr"] = ensemble.cell_medians(data.driven, "omega_disr")
+    values["cells.printed"] = ensemble.cell_medians(data.printed, "omega_disr")
     return values
 
 

@@ -1,7 +1,7 @@
 """Tensile strengths of the grains of the spin-up, beside the tension that they bear when they turn apart.
 
-`ratd.validation.pulled` pulls the grains and writes the files whose kind stands here. Each grain is pulled in two ways.
-In the *box* its own copies squeeze it until it fills a periodic box as densely as itself, which changes it, and the box
+`ratd.validation.pulling` pulls the grains and writes the files whose kind stands here. Each is pulled in two ways. In
+the *box* its own copies squeeze it until it fills a periodic box as densely as itself, which changes it, and the box
 grows along one axis. By its *ends* it is pulled as it stands. A strength S is told as S <a>/(gamma phi^1.8), <a> being
 the mean radius of the monomers and phi the filling factor of what is pulled: 0.951 by Tatsuuma et al. (2019).
 """
@@ -95,7 +95,7 @@ def read(folder):
     Parameters
     ----------
     folder : path-like
-        Of `ratd.validation.pulled`.
+        Of `ratd.validation.pulling`.
 
     Returns
     -------

@@ -11,7 +11,7 @@ import numpy as np
 from ratd.base.statistics import mean_of, median_of, rank_correlation
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
-from ratd.experiments.spin_up.findings import MARK, median, middle, of_class
+from ratd.experiments.spin_up.findings.ensemble import MARK, median, middle, of_class
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_share
 from ratd.pipeline.documents import Measured
@@ -51,7 +51,7 @@ def claims(letter, table, fragments):
     letter : str
         The first letter of the names.
     table : pandas.DataFrame
-        As `ratd.experiments.spin_up.findings.beside_print` returns it.
+        As `ratd.experiments.spin_up.findings.ensemble.beside_print` returns it.
     fragments : pandas.DataFrame
         As `ratd.experiments.spin_up.fragmentation.fragment_table` returns it.
 

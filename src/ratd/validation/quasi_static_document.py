@@ -1,7 +1,7 @@
 """docs/quasi_static.md and its figures, drawn from the tables of two checks beside them.
 
-python -m ratd.validation.quasi_static_page collect RESULTS    take the tables, such as results/validation/full
-python -m ratd.validation.quasi_static_page redraw             figures and text, in seconds
+python -m ratd.validation.quasi_static_document collect RESULTS    take the tables, such as results/validation/full
+python -m ratd.validation.quasi_static_document redraw             figures and text, in seconds
 """
 
 import sys

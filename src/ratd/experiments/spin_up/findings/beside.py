@@ -9,11 +9,11 @@ from ratd.base.materials import get_material
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
-from ratd.experiments.spin_up.claims import all_of, is_within
+from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
-from ratd.experiments.spin_up.findings import MARK, median
+from ratd.experiments.spin_up.findings.ensemble import MARK, median
 from ratd.experiments.spin_up.formulae import DAMPING, formula_effects
 from ratd.experiments.spin_up.fragmentation import exponents
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega

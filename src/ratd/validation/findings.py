@@ -15,7 +15,7 @@ from ratd.pipeline.documents import Measured
 from ratd.validation.damping import RATE, RESOLUTION, WAITING
 from ratd.validation.growth import EXPECTED_POROSITY, NOT
 from ratd.validation.quasi_static import shifts
-from ratd.validation.quasi_static_page import STEADY
+from ratd.validation.quasi_static_document import STEADY
 
 __all__ = [
     "arrival_values",
