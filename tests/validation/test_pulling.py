@@ -13,6 +13,7 @@ from ratd.engine.state import monomer_rows
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import pulled as told
 from ratd.experiments.spin_up.figures.pulled import pulled as drawn
+from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.plan import load
 from ratd.pipeline.queue import work
 from ratd.validation import pulling
@@ -86,7 +87,7 @@ def test_rows_of_the_queue_are_read_as_a_table(tmp_path, monkeypatch):
     said = []
     assert work(wanted, say=said.append) == 0 and len(said) == 2
     assert work(pulling.tasks(load(*pulling.CONFIG), tmp_path), say=said.append) == 0 and len(said) == 2
-    table = told.read(tmp_path)
+    table = told.read_pulled(tmp_path)
     assert len(table) == 2 * (1 + 3 + 1) and set(table["way"]) == set(told.WAYS)
     gamma = get_material("q-S").surface_energy
     np.testing.assert_allclose(
@@ -103,7 +104,7 @@ def test_every_task_of_the_queue_is_another_row(tmp_path):
 
 def test_an_empty_folder_is_one_sentence(tmp_path):
     with pytest.raises(ratd.InputError, match="holds no pulled grains"):
-        told.read(tmp_path)
+        told.read_pulled(tmp_path)
 
 
 def made_up(box_over_spin=2.0, ends_over_spin=3.0, seeds=3):
@@ -135,7 +136,7 @@ def made_up(box_over_spin=2.0, ends_over_spin=3.0, seeds=3):
 
 
 def test_findings_are_geometric_means_of_the_same_grains():
-    found = told.findings(*made_up())
+    found = of_pulled(*made_up())
     assert found["pulled.grains"] == 12 and found["pulled.beside"] == 12
     for kind in ("BA", "BAM1", "all"):
         assert found[f"pulled.{kind} over spin"].value == pytest.approx(2.0)
@@ -150,7 +151,7 @@ def test_findings_are_geometric_means_of_the_same_grains():
 
 def test_a_grain_that_was_not_spun_up_has_no_tension():
     table, spun = made_up()
-    found = told.findings(table, spun[spun["seed"] > 0])
+    found = of_pulled(table, spun[spun["seed"] > 0])
     assert found["pulled.grains"] == 12 and found["pulled.beside"] == 8
     assert found["pulled.BA over spin"].value == pytest.approx(2.0)
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.errors import FileError
+from ratd.base.measured import Measured, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import size_key
@@ -18,7 +19,7 @@ from ratd.experiments.spin_up.grain_table import read_spun_up
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
-from ratd.pipeline.documents import Measured, command, fill
+from ratd.pipeline.documents import command, fill
 from ratd.validation import remnant
 from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
 
@@ -215,8 +216,8 @@ def _torque(table, own):
     pairs = pairs[np.isfinite(pairs["omega_mass_75"] * pairs["omega_mass_75_own"])]
     omega = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
     yielding = pairs["axis_ratio_mass_75"] / pairs["axis_ratio_mass_75_own"]
-    found = median_of(omega)
-    values["torque change"] = Measured(abs(found["median"] - 1.0), found["error"])
+    found = median(omega)
+    values["torque change"] = Measured(abs(found.value - 1.0), found.error)
     values["torque mean"] = np.exp(np.log(omega).mean())
     values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
     values["torque higher"] = (omega > 1.02).mean()

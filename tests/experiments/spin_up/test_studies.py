@@ -7,18 +7,18 @@ import pytest
 from ratd.aggregates.growth import grain_radii, grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
+from ratd.base.measured import Measured
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.findings.studies import (
     MARKS,
     cell_ratio,
-    findings,
+    of_studies,
     paired,
     studies,
     with_radii,
 )
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.pipeline.documents import Measured
 from tiny_pipeline import ROOT
 
 TYPES = {"BA": 1.0, "BAM1": 2.0, "BAM2": 4.0}
@@ -67,7 +67,7 @@ def tables():
 
 @pytest.fixture(scope="module")
 def values(tables):
-    return findings(tables)
+    return of_studies(tables)
 
 
 def test_grains_are_compared_with_themselves(tables, values):

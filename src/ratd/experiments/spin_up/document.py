@@ -14,8 +14,13 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
-from ratd.experiments.spin_up.findings import beside, claims, ensemble, studies
-from ratd.experiments.spin_up import pulled as pulls
+from ratd.experiments.spin_up.findings import beside, claims, ensemble
+from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
+from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
+from ratd.experiments.spin_up.findings.pulled import of_pulled
+from ratd.experiments.spin_up.findings.radiation import of_radiation
+from ratd.experiments.spin_up.findings.studies import of_studies, studies
+from ratd.experiments.spin_up.pulled import read_pulled
 from ratd.experiments.spin_up.eq33 import fit_ensemble
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure2 import figure2
@@ -37,7 +42,6 @@ from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
-from ratd.experiments.spin_up.surviving import limits
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
@@ -168,8 +172,8 @@ def read_data(data=DATA):
         runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
-        pulled=pulls.read(data / "pulled"),
-        studies=studies.studies(data, files, printed),
+        pulled=read_pulled(data / "pulled"),
+        studies=studies(data, files, printed),
         lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
@@ -193,20 +197,20 @@ def findings(data, fits):
     for letter, table, drive in (("d", data.driven, DRIVEN), ("p", data.printed, PRINTED)):
         fragments = data.fragments[drive]
         values |= ensemble.of_drive(letter, table) | ensemble.of_table_3(letter, fits[drive])
-        values |= claims.claims(letter, table, fragments) | claims.fragment_values(letter, fragments)
-    values |= ensemble.of_law(data.driven) | ensemble.marks_compared(data.driven)
+        values |= claims.claims(letter, table, fragments) | of_shares(letter, fragments)
+    values |= of_law(data.driven) | ensemble.marks_compared(data.driven)
     values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
     values |= beside.of_formulae(data.tables["formulae"])
-    values |= beside.of_curve(data.driven, data.grown) | beside.of_prediction(data.driven)
+    values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
     values |= beside.composition_tables() | beside.of_heat()
-    values |= pulls.findings(data.pulled, data.driven)
+    values |= of_pulled(data.pulled, data.driven)
     printed = load(*CONFIGS).config["literal"]
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
     values |= beside.of_lammps(data.lammps)
-    values |= studies.findings(data.studies)
-    values |= beside.of_fragments(data.fragments[DRIVEN])
-    values |= limits(data.driven, data.grown, mark=ensemble.MARK)
+    values |= of_studies(data.studies)
+    values |= of_exponents(data.fragments[DRIVEN])
+    values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
     if data.recomputed is not None:
         values |= beside.recomputed(data.printed, data.recomputed)
     values["cells.quarter"] = ensemble.cell_medians(data.driven)

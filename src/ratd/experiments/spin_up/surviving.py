@@ -5,20 +5,16 @@ import pandas as pd
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import as_frame, size_key
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, destroyed_sizes
 from ratd.experiments.spin_up.size_law import SPLIT, size_law
-from ratd.pipeline.documents import Measured
 
-__all__ = ["COMPUTED", "NONE", "grown_inertia", "is_extrapolated", "limits", "power_law", "printed_law", "surviving"]
+__all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "power_law", "printed_law", "surviving"]
 
 COMPUTED = (50e-9, 550e-9)
 """Sizes [m] that were spun up; beyond them a law is extrapolated."""
-NONE = "none"
-"""What stands in a document where no size is destroyed."""
 
 
 def power_law(C, p, material):
@@ -176,36 +172,6 @@ def surviving(
                 found = _sizes(omega, spread, strengths, around, ratio, coefficient)
                 rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
-
-
-def limits(table, grown, strengths=(1.0, 1e2, 1e4), **options):
-    """Numbers for a document: smallest sizes that radiation destroys.
-
-    Parameters
-    ----------
-    table, grown
-        As of `surviving`.
-    strengths : sequence of float
-        U of the radiation.
-    **options
-        Of `surviving`, but `porous`.
-
-    Returns
-    -------
-    dict
-        "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
-        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain. With
-        " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them.
-    """
-    values = {}
-    for porous in (False, True):
-        for row in surviving(table, grown, strengths, porous=porous, **options).to_dict("records"):
-            key = f"radiation.{row['material']} {row['type']} {row['strength']:g} {row['law']}"
-            key += " porous" if porous else ""
-            for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
-                found = np.isfinite(row[size])
-                values[key + end] = Measured(row[size] / NM, error / NM) if found else NONE
-    return values
 
 
 def _sizes(omega, spread, strengths, *given):

@@ -1,4 +1,4 @@
-"""Studies beside the ensemble: what another normal force, other radii of monomers and the printed equations change.
+"""Studies: what another normal force, other radii of monomers and the printed equations change.
 
 Their rows come from `ratd.experiments.spin_up.study`. Where a study has grains of the ensemble, each is compared with
 itself. Where its monomers are others, so are its grains, and the geometric means of the cells are compared.
@@ -13,14 +13,14 @@ import pandas as pd
 from ratd.aggregates.growth import grain_radii
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
-from ratd.base.statistics import equal_weights, mean_of, median_of, slope_error, slope_of
+from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
 from ratd.experiments.spin_up.cells import cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.pipeline.documents import Measured
+from ratd.base.measured import Measured, median
 
-__all__ = ["MARKS", "cell_ratio", "carried_over", "findings", "paired", "studies", "with_radii"]
+__all__ = ["MARKS", "cell_ratio", "carried_over", "of_studies", "paired", "studies", "with_radii"]
 
 ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
 EQUAL = ("equal_30nm", "equal_41nm")
@@ -197,7 +197,7 @@ def _levelled(table, mark, k, alpha):
     return table.assign(level=np.exp(y - alpha * x), lever=np.exp(x))
 
 
-def findings(tables):
+def of_studies(tables):
     """Values of the slots of a document on the studies.
 
     Parameters
@@ -244,8 +244,7 @@ def _same(name, table, beside, sign="."):
     values = {f"{name}{sign}grains": len(pairs)}
     for kind, part in _parts(pairs):
         for mark in MARKS:
-            found = median_of(part[f"{mark}_ratio"])
-            values[f"{name}{sign}{kind} {mark}"] = Measured(found["median"], found["error"])
+            values[f"{name}{sign}{kind} {mark}"] = median(part[f"{mark}_ratio"])
     return values
 
 
@@ -255,8 +254,7 @@ def _over_table_3(table):
     values = {}
     for kind, part in _parts(table):
         for mark in MARKS:
-            found = median_of(part[mark] / law[part.index])
-            values[f"{PRINTED}.{kind} {mark} table 3"] = Measured(found["median"], found["error"])
+            values[f"{PRINTED}.{kind} {mark} table 3"] = median(part[mark] / law[part.index])
     return values
 
 
