@@ -9,7 +9,7 @@ from ratd.experiments.spin_up.cells import as_frame, size_key
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, destroyed_sizes
-from ratd.experiments.spin_up.size_law import SPLIT, size_law
+from ratd.experiments.spin_up.size_law import SPLIT, size_law, unit_of
 
 __all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "power_law", "printed_law", "surviving"]
 
@@ -30,9 +30,8 @@ def power_law(C, p, material):
     callable
         Of sizes [m] (n,) -> omega [rad s-1] (..., n).
     """
-    unit = np.sqrt(material.surface_energy / (material.density * SPLIT**3))
     C, p = np.asarray(C)[..., None], np.asarray(p)[..., None]
-    return lambda size: C * unit * (np.asarray(size) / SPLIT) ** -p
+    return lambda size: C * unit_of(material) * (np.asarray(size) / SPLIT) ** -p
 
 
 def printed_law(grown, material, kind):

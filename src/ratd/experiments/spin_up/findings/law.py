@@ -11,7 +11,7 @@ from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.findings.ensemble import MARK, MARKS
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.size_law import SPLIT, curved_law, size_law
+from ratd.experiments.spin_up.size_law import curved_law, curved_law_value, size_law, unit_of
 
 __all__ = ["of_curve", "of_law", "of_prediction"]
 
@@ -55,9 +55,7 @@ def of_curve(table, grown):
     values["curve.rejected"] = " and ".join(bent) or "no type"
     material, kind, size = EXAMPLE
     row, own = law.loc[kind], get_material(material)
-    x = math.log(size / SPLIT)
-    unit = math.sqrt(own.surface_energy / (own.density * SPLIT**3))
-    values["example.omega"] = row["C"] * unit * math.exp(-row["p"] * x - row["q"] * x * x)
+    values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
     cell = grown[
         (grown["material"] == material) & (grown["type"] == kind) & np.isclose(grown["a_eff"], size, atol=1e-12)
     ]
