@@ -97,8 +97,7 @@ def tasks(plan, data):
 
 def _table(plan, data, material, kind):
     """The table of a material and type."""
-    growth = {name: value for name, value in plan.grow(material, kind, 0.0).items() if name != "a_eff"}
-    settings = {"growth": growth, "box": BOX, "ends": ENDS, "step": STEP | {"longest": LONGEST}}
+    settings = {"growth": plan.growth(material, kind), "box": BOX, "ends": ENDS, "step": STEP | {"longest": LONGEST}}
     return Table(Path(data, f"{material}_{kind}.nc"), KIND, ("a_eff", "seed"), plan.materials[material], settings)
 
 

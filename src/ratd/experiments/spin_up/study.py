@@ -68,8 +68,7 @@ def tasks(plan, data):
 
 def _table(plan, data, drive, material, kind):
     """The table of a drive, material and type."""
-    growth = {name: value for name, value in plan.grow(material, kind, 0.0).items() if name != "a_eff"}
-    settings = {"growth": growth, "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
+    settings = {"growth": plan.growth(material, kind), "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
     path = Path(data, drive, f"{material}_{kind}.nc")
     return Table(path, "spun_up", _KEY, plan.materials[material], settings)
 
