@@ -150,7 +150,6 @@ def values(tables):
     worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
     found["scheme.verdict"] = "met" if worst < findings.SHIFTED else "open"
     found["scheme.all verdict"] = "met" if scheme["classes"] == scheme["all classes"] else "open"
-    found["scheme.BA large"] = findings.large_fluffy(tables["quasi_static"])
     found["scheme.DMT over JKR"] = np.sqrt(4.0 / 3.0)
     found |= {"limit.near": lammps_findings.NEAR, "limit.force": lammps_findings.FORCE}
     return found | findings.limits()

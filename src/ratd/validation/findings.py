@@ -14,14 +14,11 @@ from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.validation.damping import RATE, RESOLUTION, WAITING
 from ratd.validation.growth import EXPECTED_POROSITY, NOT
-from ratd.validation.quasi_static import shifts
-from ratd.validation.quasi_static_document import STEADY
 
 __all__ = [
     "arrival_values",
     "exponents",
     "grown",
-    "large_fluffy",
     "limits",
     "migrations",
     "of_balance",
@@ -42,8 +39,6 @@ __all__ = [
 ]
 
 TYPES = ("BA", "BAM1", "BAM2")
-LARGE = 250e-9
-"""Effective radius [m] above which BA grains are the hard case of docs/quasi_static.md."""
 GRAIN = ["material", "type", "a_eff", "seed"]
 PARTED = 0.01
 """Part by which a pair may part off the exact answer."""
@@ -335,25 +330,6 @@ def of_theory(table):
     values["theory.trees"] = int(trees.sum())
     values["theory.trees on it"] = int((np.abs(over[trees] - 1.0) < SHIFTED).sum())
     return values
-
-
-def large_fluffy(table):
-    """How far single BA grains of 300 nm and above are off when one number of the scheme is changed.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of `ratd.validation.quasi_static`.
-
-    Returns
-    -------
-    float
-        Where 68 % of the grains end, over 1, of the number that does most: of the loss of a quarter.
-    """
-    large = table[(table["type"] == "BA") & (table["a_eff"] > LARGE)]
-    found = shifts(large, marks=("omega_mass_75",))
-    found = found[[pair in STEADY for pair in zip(found["vary"], found["value"], strict=True)]]
-    return float(np.maximum(1.0 - found["low"], found["high"] - 1.0).max())
 
 
 def ratios(table, mark, times, by):
