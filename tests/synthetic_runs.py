@@ -193,12 +193,6 @@ def marked(run):
     return run, disruption(run)
 
 
-def with_all_marks(table):
-    """A table of `make_table` with the marks that it lacks, each a part of omega_mass_75 of its own."""
-    own = table["omega_mass_75"]
-    return table.assign(omega_first_loss=0.8 * own, omega_contacts_75=1.1 * own, omega_disr=1.2 * own)
-
-
 def make_fragments(grains=6, exponent=1.2, seed=0):
     """Fragments of grains of three types and sizes, monomers drawn from a power law, together half of the mass."""
     rng = np.random.default_rng(seed)

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from ratd.base.errors import InputError
-from ratd.pipeline.documents import Measured, fill, slots
+from ratd.base.measured import Measured
+from ratd.pipeline.documents import fill, slots
 
 
 def test_slots_are_filled():

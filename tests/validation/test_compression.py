@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.base.errors import InputError
+from peer import need_lammps
 from ratd.experiments.compression.findings import of_lammps
 from ratd.pipeline import io
-from ratd.validation import compression, peer_lammps
+from ratd.validation import compression
 from ratd.validation.tables import as_dataset
 
 SMALL = {
@@ -16,18 +16,9 @@ SMALL = {
 }  # fmt: skip
 
 
-def installed():
-    try:
-        peer_lammps.load()
-    except InputError:
-        return False
-    return True
-
-
 @pytest.fixture(scope="module")
 def rows():
-    if not installed():
-        pytest.skip("LAMMPS is not installed")
+    need_lammps()
     said = []
     found = compression.compute(SMALL, said.append)
     assert said[0] == "ratd: done" and "LAMMPS: phi = 0.2" in said[-1].replace("0.19", "0.2")

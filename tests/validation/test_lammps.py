@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ratd
+from peer import needs_lammps
 from ratd.base.materials import MATERIALS
 from ratd.engine.layout import VX, WX, X
 from ratd.engine.leapfrog import leapfrog
@@ -31,15 +32,6 @@ from tiny_pipeline import ROOT
 CONFIG = ROOT / "config" / "validation.yaml"
 
 
-def installed():
-    try:
-        peer_lammps.load()
-    except ratd.InputError:
-        return False
-    return True
-
-
-needs_lammps = pytest.mark.skipif(not installed(), reason="LAMMPS is not installed")
 PAIRS = [(20e-9, 20e-9), (10e-9, 100e-9)]
 
 

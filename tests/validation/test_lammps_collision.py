@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 import ratd
-from ratd.base.errors import InputError
+from peer import need_lammps
 from ratd.base.materials import MATERIALS
 from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.run import collide
 from ratd.geometry.neighbours import close_pairs, connected_components
-from ratd.validation import peer_lammps
 from ratd.validation.peer_lammps import Spheres, dmt_coefficients
 
 SILICA = MATERIALS["silica"]
@@ -20,10 +19,7 @@ TIME, STEP = 1.5e-7, 2e-12
 
 @pytest.fixture(scope="module")
 def cluster():
-    try:
-        peer_lammps.load()
-    except InputError as error:
-        pytest.skip(str(error))
+    need_lammps()
     radii = np.concatenate([[0.5e-6], np.linspace(0.35e-6, 0.2e-6, 15)])
     return ratd.build_cluster(radii, 1.4e-6, second_contact=0.5, seed=4)
 

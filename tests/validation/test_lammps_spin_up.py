@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 import ratd
+from peer import needs_lammps
 from ratd.base.units import NM
 from ratd.engine.layout import RADIUS, X
 from ratd.engine.state import monomer_rows
@@ -19,17 +20,6 @@ from ratd.validation.plan import Checks
 from tiny_pipeline import ROOT
 
 CONFIG = ROOT / "config" / "validation.yaml"
-
-
-def installed():
-    try:
-        peer_lammps.load()
-    except ratd.InputError:
-        return False
-    return True
-
-
-needs_lammps = pytest.mark.skipif(not installed(), reason="LAMMPS is not installed")
 
 
 def test_classes_of_radius_are_narrow_and_cover_all():

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from ratd.base.errors import FileError
-from ratd.validation import quasi_static_page, remnant
+from ratd.validation import quasi_static_document, remnant
 from ratd.validation.quasi_static import compute, shifts
 
 ROOT = Path(__file__).parents[2]
@@ -72,14 +72,14 @@ def test_a_remnant_turns_its_own_axis_into_the_rotation_axis():
 
 
 def test_the_page_and_its_figures_are_those_of_the_data(tmp_path):
-    quasi_static_page.redraw(ROOT, tmp_path)
-    page = quasi_static_page.DOCUMENT
+    quasi_static_document.redraw(ROOT, tmp_path)
+    page = quasi_static_document.DOCUMENT
     assert (tmp_path / page).read_bytes() == (ROOT / page).read_bytes(), "redraw the page"
-    assert sorted(path.name for path in (tmp_path / quasi_static_page.FIGURES).glob("*.png")) == [
+    assert sorted(path.name for path in (tmp_path / quasi_static_document.FIGURES).glob("*.png")) == [
         "numbers.png", "remnant.png",
     ]  # fmt: skip
 
 
 def test_collect_names_the_table_that_is_missing(tmp_path):
     with pytest.raises(FileError, match="quasi_static.csv: is missing; `snakemake --cores 2"):
-        quasi_static_page.collect(tmp_path, tmp_path / "data")
+        quasi_static_document.collect(tmp_path, tmp_path / "data")

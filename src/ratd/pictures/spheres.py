@@ -48,8 +48,8 @@ def render(position, radius, colour, half_width, pixels=360):
         Centres in the coordinates of the picture: right, up, towards the viewer [m].
     radius : (n,) array_like
         Radii [m].
-    colour : (n, 3) array_like
-        Red, green, blue of each sphere, 0 to 1.
+    colour : (..., n, 3) array_like
+        Red, green, blue of each sphere, 0 to 1; several pictures of the same spheres cost little more than one.
     half_width : float
         The picture shows -half_width to half_width along both axes [m].
     pixels : int
@@ -57,40 +57,49 @@ def render(position, radius, colour, half_width, pixels=360):
 
     Returns
     -------
-    (pixels, pixels, 4) numpy.ndarray of uint8
+    (..., pixels, pixels, 4) numpy.ndarray of uint8
         Red, green, blue, opacity; the first row is at the top. Where there is no sphere the picture is transparent.
     """
     position, radius, colour = (np.asarray(values, dtype=float) for values in (position, radius, colour))
     fine = SUPERSAMPLING * pixels
-    centre = ((np.arange(fine) + 0.5) / fine * 2 - 1) * half_width  # of each fine pixel
-    depth = np.full((fine, fine), -np.inf)  # row 0 at the bottom
-    shade = np.zeros((fine, fine))
-    owner = np.full((fine, fine), -1)
-    for k in range(len(radius)):
-        (x, y, z), a = position[k], radius[k]
-        columns = slice(*np.searchsorted(centre, [x - a, x + a]))
-        rows = slice(*np.searchsorted(centre, [y - a, y + a]))
-        nx = (centre[columns] - x)[None, :] / a
-        ny = (centre[rows] - y)[:, None] / a
-        square = 1.0 - nx**2 - ny**2
-        nz = np.sqrt(np.maximum(square, 0.0))
-        front = (square > 0) & (z + a * nz > depth[rows, columns])
-        light = np.maximum(0.0, nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2])
-        bright = (AMBIENT + (1 - AMBIENT) * light) * np.minimum(1.0, 0.45 + 0.55 * nz / EDGE)
-        depth[rows, columns] = np.where(front, z + a * nz, depth[rows, columns])
-        shade[rows, columns] = np.where(front, bright, shade[rows, columns])
-        owner[rows, columns] = np.where(front, k, owner[rows, columns])
-    covered = owner >= 0
-    picture = np.zeros((fine, fine, 4))
-    if covered.any():
-        near, far = depth[covered].max(), depth[covered].min()
-        fade = 1 - FADE * (near - depth[covered]) / max(near - far, np.finfo(float).tiny)
-        picture[covered, :3] = colour[owner[covered]] * (shade[covered] * fade)[:, None]
-        picture[covered, 3] = 1.0
-    blocks = picture[::-1].reshape(pixels, SUPERSAMPLING, pixels, SUPERSAMPLING, 4).mean(axis=(1, 3))
+    owner, bright = _seen(position, radius, ((np.arange(fine) + 0.5) / fine * 2 - 1) * half_width)
+    blocks = np.zeros((*colour.shape[:-2], pixels, pixels, 4))
+    for row, column in np.ndindex(SUPERSAMPLING, SUPERSAMPLING):
+        own = (slice(row, None, SUPERSAMPLING), slice(column, None, SUPERSAMPLING))
+        blocks[..., :3] += colour[..., owner[own], :] * bright[own][..., None]
+        blocks[..., 3] += owner[own] >= 0
+    blocks /= SUPERSAMPLING**2
     opacity = blocks[..., 3:]
     np.divide(blocks[..., :3], opacity, out=blocks[..., :3], where=opacity > 0)
     return np.rint(255 * np.clip(blocks, 0, 1)).astype(np.uint8)
+
+
+def _seen(position, radius, centre):
+    """Which sphere is seen in each pixel, -1 for none, and how bright it is there: (n, n) each, row 0 at the top.
+
+    `centre` (n,) are the places of the pixels along both axes.
+    """
+    depth = np.full((len(centre), len(centre)), -np.inf)  # row 0 at the bottom
+    owner = np.full(depth.shape, -1)
+    bright = np.zeros(depth.shape)
+    for k, ((x, y, z), a) in enumerate(zip(position, radius, strict=True)):
+        columns = slice(*np.searchsorted(centre, [x - a, x + a]))
+        rows = slice(*np.searchsorted(centre, [y - a, y + a]))
+        square = 1.0 - ((centre[columns] - x)[None, :] / a) ** 2 - ((centre[rows] - y)[:, None] / a) ** 2
+        surface = z + a * np.sqrt(np.maximum(square, 0.0))
+        front = (square > 0) & (surface > depth[rows, columns])
+        np.copyto(depth[rows, columns], surface, where=front)
+        np.copyto(owner[rows, columns], k, where=front)
+    covered = np.nonzero(owner >= 0)
+    if len(covered[0]):
+        seen, depth = owner[covered], depth[covered]
+        nx, ny = ((centre[place] - position[seen, k]) / radius[seen] for k, place in enumerate(covered[::-1]))
+        nz = np.sqrt(1.0 - nx**2 - ny**2)
+        light = np.maximum(0.0, nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2])
+        shade = (AMBIENT + (1 - AMBIENT) * light) * np.minimum(1.0, 0.45 + 0.55 * nz / EDGE)
+        near, far = depth.max(), depth.min()
+        bright[covered] = shade * (1 - FADE * (near - depth) / max(near - far, np.finfo(float).tiny))
+    return owner[::-1], bright[::-1]
 
 
 def show(axes, picture, half_width):

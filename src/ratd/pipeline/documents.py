@@ -13,22 +13,15 @@ import math
 import re
 import sys
 from difflib import get_close_matches
-from typing import NamedTuple
 
 from ratd.base.errors import FileError, InputError
+from ratd.base.measured import Measured
 
-__all__ = ["Measured", "command", "fill", "slots"]
+__all__ = ["command", "fill", "slots"]
 
 _SLOT = re.compile(r"\{\{\s*([^{}:=|]+?)\s*(?:([:=|])([^}]*))?\}\}")
 _CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-class Measured(NamedTuple):
-    """A number with its standard error, NaN where it has none."""
-
-    value: float
-    error: float = math.nan
 
 
 def slots(template):

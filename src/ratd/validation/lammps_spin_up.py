@@ -24,7 +24,7 @@ import xarray as xr
 from ratd.aggregates.growth import grow
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
-from ratd.base.statistics import median_of
+from ratd.base.measured import median
 from ratd.base.units import NM
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cells import TYPES, size_key, sort_cells
@@ -33,7 +33,6 @@ from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
-from ratd.pipeline.documents import Measured
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
@@ -328,20 +327,15 @@ def findings(table):
         for name, group in groups.items():
             own = group[group["mark"] == mark]
             slot = f"lammps_spin_up.{name} {short}"
-            values[slot] = _median(own["LAMMPS"] / own["waits"])
-            values[f"{slot} driven"] = _median(own["LAMMPS"] / own["ratd"])
-            values[f"{slot} waits"] = _median(own["ratd"] / own["waits"])
+            values[slot] = median(own["LAMMPS"] / own["waits"])
+            values[f"{slot} driven"] = median(own["LAMMPS"] / own["ratd"])
+            values[f"{slot} waits"] = median(own["ratd"] / own["waits"])
             values[f"{slot} grains"] = int(np.isfinite(own["LAMMPS"] / own["waits"]).sum())
         both_types = table[table["mark"] == mark].pivot_table(index=keys[:-1], columns="types", values="LAMMPS")
         if {"own", "classes"} <= set(both_types):
             differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()
             values[f"lammps_spin_up.classes {short}"] = float(differs)
     return values
-
-
-def _median(values):
-    found = median_of(values)
-    return Measured(found["median"], found["error"])
 
 
 def main(words=None):

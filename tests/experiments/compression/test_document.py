@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 import ratd
+from ratd.base.measured import Measured
 from ratd.experiments.compression import document
 from ratd.experiments.compression.findings import findings
-from ratd.pipeline.documents import Measured, fill, slots
+from ratd.pipeline.documents import fill, slots
 
 TEMPLATE = document.TEMPLATE.read_text(encoding="utf-8")
 

@@ -9,12 +9,11 @@ from ratd.base.materials import get_material
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.figures.fragments import cumulative, fragments, shares
 from ratd.experiments.spin_up.figures.law import law
-from ratd.experiments.spin_up.figures.marks import LINES, marks
 from ratd.experiments.spin_up.figures.overview import over_the_paper, overview
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
 from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER
-from synthetic_runs import make_fragments, make_table, with_all_marks
+from synthetic_runs import make_fragments, make_table
 
 FACTOR = {"BA": 0.02, "BAM1": 0.05, "BAM2": 0.1}
 
@@ -110,26 +109,6 @@ def test_law_draws_the_curve_that_made_the_grains():
 def test_law_needs_three_sizes():
     with pytest.raises(InputError, match="three sizes"):
         law(make_table(sizes=(100e-9, 200e-9), seeds=3))
-
-
-def test_marks_are_geometric_means_of_the_same_grains(table):
-    every = with_all_marks(table)
-    figure = marks(every)
-    panels = figure.axes
-    assert [axes.get_title() for axes in panels] == list(FACTOR) and len({axes.get_ylim() for axes in panels}) == 1
-    for axes, (kind, factor) in zip(panels, FACTOR.items(), strict=True):
-        for mark, (_, look) in LINES.items():
-            (line,) = [x for x in axes.get_lines() if x.get_marker() == look["marker"]]
-            here = every[every["type"] == kind]
-            own = np.log(over_the_paper(here, mark)).groupby(here["a_eff"]).mean()
-            np.testing.assert_allclose(line.get_ydata(), np.exp(own))
-        (mass,) = [x for x in axes.get_lines() if x.get_marker() == LINES["omega_mass_75"][1]["marker"]]
-        np.testing.assert_allclose(mass.get_ydata(), factor)
-    assert {text.get_text() for text in panels[-1].texts} == {text for text, _ in LINES.values()}
-    some = every.assign(omega_disr=every["omega_disr"].where(every["seed"] > 1))
-    assert f"{(every['seed'] > 1).sum()} grains with all marks" in marks(some).get_suptitle()
-    with pytest.raises(InputError, match="all marks"):
-        marks(every.assign(omega_disr=np.nan))
 
 
 def test_fragments_are_counted_by_the_grain():

@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 
 from ratd.base.errors import FileError
+from ratd.base.measured import Measured
 from ratd.experiments.spin_up import document
-from ratd.experiments.spin_up.claims import all_of, is_above, is_below, is_within
-from ratd.experiments.spin_up.findings import geometric_mean, of_drive, strength_omega, what_contacts_hold
-from ratd.experiments.spin_up.side_findings import composition_tables, of_pairs, recomputed
-from ratd.pipeline.documents import Measured
+from ratd.experiments.spin_up.findings.beside import composition_tables, of_pairs, recomputed
+from ratd.experiments.spin_up.findings.claims import all_of, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
 
 ROOT = Path(__file__).parents[3]
 TYPES = ("BA", "BAM1", "BAM2")
@@ -70,13 +70,6 @@ def test_omega_over_print_and_its_powers_of_size_are_found():
     assert values["d.n"] == 27 and values["d.seeds"] == 3
     # BA falls fastest: below BAM1 at 550 nm alone, where there is one cell of each type and size
     assert values["d.BA below BAM1"] == 1
-
-
-def test_the_error_of_a_geometric_mean_is_that_of_its_cells():
-    cell = np.repeat([0, 1], 3)
-    found = geometric_mean(np.exp([0.9, 1.0, 1.1, 3.9, 4.0, 4.1]), cell)
-    assert found.value == pytest.approx(np.exp(2.5))
-    assert found.error / found.value == pytest.approx(0.1 / np.sqrt(3) / np.sqrt(2))
 
 
 def test_grains_above_their_firm_bound_are_counted():

@@ -23,14 +23,13 @@ from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.eq33 import eq33, fit_ensemble
 from ratd.experiments.spin_up.figures.figure2 import figure2
-from ratd.experiments.spin_up.figures.figure4 import figure4, figure4_beside
+from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.figures.figure6 import axis_ratios, figure6
 from ratd.experiments.spin_up.figures.figure7 import figure7
 from ratd.experiments.spin_up.figures.figure8 import figure8
 from ratd.experiments.spin_up.figures.figure10 import figure10
 from ratd.experiments.spin_up.figures.fragments import fragments
 from ratd.experiments.spin_up.figures.law import law
-from ratd.experiments.spin_up.figures.marks import marks
 from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.pairs import force_controlled_omega
@@ -53,7 +52,7 @@ from ratd.pictures.style import (
     styled,
     type_style,
 )
-from synthetic_runs import make_fragments, make_run, make_table, with_all_marks
+from synthetic_runs import make_fragments, make_run, make_table
 
 SIZES = (50e-9, 75e-9, 100e-9)
 PANEL_SIZES = (200e-9, 350e-9, 500e-9)
@@ -89,7 +88,6 @@ def full_figures():
     return {
         "figure2": figure2(table),
         "figure4": figure4(cell_of_runs()),
-        "figure4 beside": figure4_beside({"one": cell_of_runs(), "other": cell_of_runs(2)}),
         "figure6": figure6(table),
         "figure7": figure7(table, fit_ensemble(table, n_bootstrap=5)),
         "figure8": figure8(table, fit=fit_ensemble(table, n_bootstrap=5)),
@@ -97,7 +95,6 @@ def full_figures():
         "overview": overview(table),
         "overview of both": overview(table, table, table.assign(firm_bound=table["cut_bound"])),
         "law": law(table),
-        "marks": marks(with_all_marks(table)),
         "fragments": fragments(make_fragments(), "prescribed"),
     }
 
@@ -282,17 +279,6 @@ def test_figure4_points_at_the_greatest_gain_of_contacts():
     assert note.xy == (float(last["omega_contacts_max"]), float(last["n_contacts_max"]))
     assert "+10 %" in note.get_text()
     assert "no grain\ngains contacts" in words(figure4([make_run(1e8, gain=0)]))
-
-
-def test_figure4_beside_has_one_axis_of_each_kind():
-    groups = {"slow": cell_of_runs(3), "fast": [make_run(3e8, omega_1=2e8, end=9e8, seed=seed) for seed in range(2)]}
-    figure = figure4_beside(groups)
-    rows = np.reshape(figure.axes, (3, 2))
-    assert len({axes.get_xlim() for axes in rows.flat}) == 1
-    assert all(left.get_ylim() == right.get_ylim() for left, right in rows)
-    assert "slow, 3 grains" in words(figure) and "fast, 2 grains" in words(figure)
-    with pytest.raises(InputError, match="at least one group"):
-        figure4_beside({})
 
 
 def test_figures_of_other_grains_have_no_line_of_the_paper():

@@ -15,9 +15,10 @@ from ratd.experiments.spin_up.fragmentation import (
     fragment_table,
     fragmentation,
     join,
-    read_spun_up_fragments,
     size_class,
+    spun_up_fragments,
 )
+from ratd.experiments.spin_up.grain_table import spun_up_files
 from ratd.pipeline import io, kinds
 
 SPUN_UP = Path("docs/reproduction/data/spun_up/prescribed/q-S_BAM1.nc")
@@ -82,7 +83,8 @@ def test_a_file_gives_back_what_was_written(tmp_path):
 
 def test_fragments_of_the_queue_are_read(tmp_path):
     shutil.copy(SPUN_UP, tmp_path)
-    table, file = read_spun_up_fragments(tmp_path), io.read(SPUN_UP, "spun_up")
+    (file,) = spun_up_files(tmp_path)
+    table = spun_up_fragments([file])
     assert len(table) == file.sizes["fragment"] and table["grain"].max() + 1 == file.sizes["row"]
     np.testing.assert_allclose(table["fragment_mass"].sum(), file["fragment_mass"].values.sum())
     gone = table[table["half"]].groupby("grain")["mass_fraction"].sum()

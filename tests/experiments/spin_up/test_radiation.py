@@ -12,6 +12,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.figures.radiation import radiation
+from ratd.experiments.spin_up.findings.radiation import NONE, of_radiation
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import (
     DIFFUSE,
@@ -29,7 +30,7 @@ from ratd.experiments.spin_up.radiation import (
     torque_efficiency,
 )
 from ratd.experiments.spin_up.size_law import SPLIT, size_law
-from ratd.experiments.spin_up.surviving import NONE, grown_inertia, limits, power_law, printed_law, surviving
+from ratd.experiments.spin_up.surviving import grown_inertia, power_law, printed_law, surviving
 from ratd.pictures.style import save
 from ratd.pipeline.documents import fill
 from synthetic_runs import make_table
@@ -223,7 +224,7 @@ def test_a_material_that_the_paper_does_not_have():
 
 
 def test_limits_fill_a_document(table):
-    values = limits(table, table, draws=50)
+    values = of_radiation(table, table, draws=50)
     text = fill("{{radiation.q-S BAM1 10000 ours:.0f±}} nm, {{radiation.q-S BAM1 10000 printed porous:.0f}}", values)
     number = values["radiation.q-S BAM1 10000 ours"]
     assert text.startswith(f"{number.value:.0f} ± {number.error:.0f} nm") and 10 < number.value < 300

@@ -7,19 +7,18 @@ import pytest
 from ratd.aggregates.growth import grain_radii, grow
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
+from ratd.base.measured import Measured
 from ratd.experiments.spin_up.eq33 import eq33_omega
-from ratd.experiments.spin_up.grain_table import read_spun_up
-from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.studies import (
-    DATA,
+from ratd.experiments.spin_up.findings.studies import (
     MARKS,
     cell_ratio,
-    findings,
+    of_studies,
     paired,
     studies,
     with_radii,
 )
-from ratd.pipeline.documents import Measured
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from tiny_pipeline import ROOT
 
 TYPES = {"BA": 1.0, "BAM1": 2.0, "BAM2": 4.0}
@@ -68,7 +67,7 @@ def tables():
 
 @pytest.fixture(scope="module")
 def values(tables):
-    return findings(tables)
+    return of_studies(tables)
 
 
 def test_grains_are_compared_with_themselves(tables, values):
@@ -170,10 +169,10 @@ def test_radii_of_a_grain_without_growing_it(kind, size):
 
 def test_rows_have_the_radii_of_their_own_monomers():
     """On rows that come with ratd."""
-    folder = ROOT / DATA / "equal_41nm" / "prescribed"
-    rows = read_spun_up(folder)
+    files = spun_up_files(ROOT / "docs/reproduction/data/equal_41nm/prescribed")
+    rows = spun_up_table(files)
     wanted = rows["seed"] < 2
-    table = with_radii(rows, folder, wanted)
+    table = with_radii(rows, files, wanted)
     assert (np.isfinite(table["radius_1"]) == wanted).all() and wanted.sum() == 18
     table = table[wanted]
     np.testing.assert_allclose(table["radius_3"], table["a_eff"] / table["n_monomers"] ** (1 / 3), rtol=1e-9)
@@ -181,5 +180,5 @@ def test_rows_have_the_radii_of_their_own_monomers():
 
 
 def test_a_study_without_rows_is_named(tmp_path):
-    with pytest.raises(FileError, match="spun_up/prescribed: holds no rows; `python -m .* --study spun_up` makes them"):
-        studies(tmp_path)
+    with pytest.raises(FileError, match="dmt/prescribed: holds no rows; `python -m .* --study dmt` makes them"):
+        studies(tmp_path, [], None)

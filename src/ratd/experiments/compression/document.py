@@ -30,7 +30,7 @@ CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml
 SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
 PEER = Path("docs/validation/data/compression.nc")
-"""What LAMMPS found, taken there by ``python -m ratd.validation.page collect``."""
+"""What LAMMPS found, taken there by ``python -m ratd.validation.document collect``."""
 
 
 def collect(results, data=DATA):

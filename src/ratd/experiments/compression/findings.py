@@ -28,7 +28,7 @@ from ratd.experiments.compression.strength import (
     share_at,
     slope_of_structure,
 )
-from ratd.pipeline.documents import Measured
+from ratd.base.measured import Measured
 
 __all__ = ["findings", "spun_up"]
 

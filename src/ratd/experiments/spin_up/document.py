@@ -14,10 +14,13 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
-from ratd.experiments.spin_up import claims, side_findings
-from ratd.experiments.spin_up import findings as numbers
-from ratd.experiments.spin_up import pulled as pulls
-from ratd.experiments.spin_up import studies as beside
+from ratd.experiments.spin_up.findings import beside, claims, ensemble
+from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
+from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
+from ratd.experiments.spin_up.findings.pulled import of_pulled
+from ratd.experiments.spin_up.findings.radiation import of_radiation
+from ratd.experiments.spin_up.findings.studies import of_studies, studies
+from ratd.experiments.spin_up.pulled import read_pulled
 from ratd.experiments.spin_up.eq33 import fit_ensemble
 from ratd.experiments.spin_up.figures.figure1 import figure1
 from ratd.experiments.spin_up.figures.figure2 import figure2
@@ -33,13 +36,12 @@ from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
-from ratd.experiments.spin_up.fragmentation import fragment_table, read_spun_up_fragments
-from ratd.experiments.spin_up.grain_table import GRAIN_COLUMNS, read_ensemble, read_spun_up
+from ratd.experiments.spin_up.fragmentation import fragment_table, spun_up_fragments
+from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
-from ratd.experiments.spin_up.run_files import read_runs, run_row, runs
-from ratd.experiments.spin_up.surviving import limits
+from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
@@ -93,7 +95,7 @@ class Data(NamedTuple):
     lammps : pandas.DataFrame
         Thresholds of both codes, from the validation.
     studies : dict
-        See `ratd.experiments.spin_up.studies.studies`.
+        See `ratd.experiments.spin_up.findings.studies.studies`.
     """
 
     grown: pd.DataFrame
@@ -154,34 +156,37 @@ def read_data(data=DATA):
     """The data beside the document."""
     data = Path(data)
     tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
-    printed = io.read(data / "literal.nc", "table").to_pandas()
+    grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
+    files = spun_up_files(data / "spun_up" / DRIVEN)
     anew = data / "spun_up" / PRINTED
     return Data(
-        grown=numbers.beside_print(io.read(data / "grown.nc", "table").to_pandas()[list(GRAIN_COLUMNS)]),
-        driven=numbers.beside_print(read_ensemble(data / "grown.nc", data / "spun_up" / DRIVEN)),
-        printed=numbers.beside_print(printed),
+        grown=ensemble.beside_print(grown),
+        driven=ensemble.beside_print(spun_up_table(files, grown)),
+        printed=ensemble.beside_print(printed),
         recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
         fragments={
-            DRIVEN: read_spun_up_fragments(data / "spun_up" / DRIVEN),
+            DRIVEN: spun_up_fragments(files),
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
         },
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
         runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
-        pulled=pulls.read(data / "pulled"),
-        studies=beside.studies(data),
+        pulled=read_pulled(data / "pulled"),
+        studies=studies(data, files, printed),
         lammps=pd.read_csv(data.parents[1] / LAMMPS),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
 
-def findings(data):
+def findings(data, fits):
     """Values of the slots of both documents.
 
     Parameters
     ----------
     data : Data
+    fits : dict of str to xarray.Dataset
+        Drive -> fit of Eq. 33 to its grains, see `redraw`.
 
     Returns
     -------
@@ -191,44 +196,41 @@ def findings(data):
     values = {}
     for letter, table, drive in (("d", data.driven, DRIVEN), ("p", data.printed, PRINTED)):
         fragments = data.fragments[drive]
-        values |= numbers.of_drive(letter, table) | numbers.of_table_3(letter, table)
-        values |= claims.claims(letter, table, fragments) | claims.fragment_values(letter, fragments)
-    values |= numbers.of_law(data.driven) | numbers.marks_compared(data.driven)
-    values |= numbers.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
-    values |= side_findings.of_ways(data.tables["parameters"]) | side_findings.of_pairs(data.pairs)
-    values |= side_findings.of_formulae(data.tables["formulae"])
-    values |= side_findings.of_curve(data.driven, data.grown) | side_findings.of_prediction(data.driven)
-    values |= side_findings.composition_tables() | side_findings.of_heat()
-    values |= pulls.findings(data.pulled, data.driven)
+        values |= ensemble.of_drive(letter, table) | ensemble.of_table_3(letter, fits[drive])
+        values |= claims.claims(letter, table, fragments) | of_shares(letter, fragments)
+    values |= of_law(data.driven) | ensemble.marks_compared(data.driven)
+    values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
+    values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
+    values |= beside.of_formulae(data.tables["formulae"])
+    values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
+    values |= beside.composition_tables() | beside.of_heat()
+    values |= of_pulled(data.pulled, data.driven)
     printed = load(*CONFIGS).config["literal"]
-    values |= side_findings.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
-    values |= side_findings.of_lammps(data.lammps)
-    values |= beside.findings(data.studies)
-    values |= side_findings.of_fragments(data.fragments[DRIVEN])
-    values |= limits(data.driven, data.grown, mark=numbers.MARK)
+    values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
+    values |= beside.of_lammps(data.lammps)
+    values |= of_studies(data.studies)
+    values |= of_exponents(data.fragments[DRIVEN])
+    values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
     if data.recomputed is not None:
-        values |= side_findings.recomputed(data.printed, data.recomputed)
-    values["cells.quarter"] = numbers.cell_medians(data.driven)
-    values["cells.disr"] = numbers.cell_medians(data.driven, "omega_disr")
-    values["cells.printed"] = numbers.cell_medians(data.printed, "omega_disr")
+        values |= beside.recomputed(data.printed, data.recomputed)
+    values["cells.quarter"] = ensemble.cell_medians(data.driven)
+    values["cells.disr"] = ensemble.cell_medians(data.driven, "omega_disr")
+    values["cells.printed"] = ensemble.cell_medians(data.printed, "omega_disr")
     return values
 
 
-def figures(data):
-    """The figures of the document, a name and a figure each."""
+def figures(data, fits):
+    """The figures of the document, a name and a figure each, of the same as `findings`."""
     plan = load(*CONFIGS)
     for drive, table in ((DRIVEN, data.driven), (PRINTED, data.printed)):
         six, eight = plan.figure("figure6", drive), plan.figure("figure8", drive)
         yield f"figure4_{drive}", figure4(data.runs[f"figure4/{drive}"], drive=drive)
-        fit = fit_ensemble(table, PAPER_MEAN_RADIUS)
-        yield f"figure7_{drive}", figure7(table, fit, drive=drive, grown=data.grown)
+        yield f"figure7_{drive}", figure7(table, fits[drive], drive=drive, grown=data.grown)
         if drive == DRIVEN:
             yield f"figure5_{drive}", figure5(data.runs[f"figure5/{drive}"][0], drive=drive)
             yield f"figure6_{drive}", figure6(table, six["material"], six["sizes"], drive=drive)
-            yield (
-                f"figure8_{drive}",
-                figure8(table, eight["material"], eight["type"], drive=drive, grown=data.grown, fit=fit),
-            )
+            shown = eight["material"], eight["type"]
+            yield f"figure8_{drive}", figure8(table, *shown, drive=drive, grown=data.grown, fit=fits[drive])
     yield "overview", overview(data.driven, data.printed, data.firm, data.grown)
     yield "law", law(data.driven)
     yield "fragments", fragments(data.fragments[DRIVEN], drive=DRIVEN)
@@ -245,11 +247,13 @@ def redraw(folder=".", into=None):
     folder = Path(folder)
     into = folder if into is None else Path(into)
     data = read_data(folder / DATA)
-    for name, figure in figures(data):
+    tables = {DRIVEN: data.driven, PRINTED: data.printed}
+    fits = {drive: fit_ensemble(table, PAPER_MEAN_RADIUS) for drive, table in tables.items()}
+    for name, figure in figures(data, fits):
         save(figure, into / FIGURES / f"{name}.png")
     with atomic(into / DRIVEN_TABLE) as temporary:
         data.driven[list(TABLE_COLUMNS)].to_csv(temporary, index=False, float_format="%.6g")
-    values = findings(data)
+    values = findings(data, fits)
     for template, document in DOCUMENTS.items():
         text = (folder / template).read_text(encoding="utf-8")
         write_text(into / document, fill(text, values, str(template)))

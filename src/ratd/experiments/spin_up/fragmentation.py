@@ -7,7 +7,6 @@ later). Only these fragments are kept: what becomes of the largest one after tha
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,6 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.statistics import drawn_counts, equal_weights, mean_of
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
-from ratd.pipeline import io
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
@@ -147,20 +145,19 @@ def fragment_table(dataset):
     return table
 
 
-def read_spun_up_fragments(folder):
+def spun_up_fragments(files):
     """Fragments of the grains that the queue of spin-ups has finished.
 
     Parameters
     ----------
-    folder : path-like
-        As of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+    files : list of xarray.Dataset
+        From `ratd.experiments.spin_up.grain_table.spun_up_files`.
 
     Returns
     -------
     pandas.DataFrame
         As `fragment_table` makes it.
     """
-    files = [io.read(path, "spun_up") for path in sorted(Path(folder).glob("*.nc"))]
     grains = pd.concat(
         [
             pd.DataFrame(

@@ -20,8 +20,9 @@ __all__ = [
     "KEYS",
     "RUN_COLUMNS",
     "grain_table",
-    "read_ensemble",
     "read_spun_up",
+    "spun_up_files",
+    "spun_up_table",
     "table_dataset",
 ]
 
@@ -130,8 +131,8 @@ def grain_table(grains=None, marks=None):
     return sort_cells(table)
 
 
-def read_spun_up(folder):
-    """Table of the grains that the queue of spin-ups has finished.
+def spun_up_files(folder):
+    """Files of the queue of spin-ups.
 
     Parameters
     ----------
@@ -140,40 +141,44 @@ def read_spun_up(folder):
 
     Returns
     -------
-    pandas.DataFrame
-        As `grain_table` makes it.
+    list of xarray.Dataset
     """
-    return grain_table(marks=pd.concat([_spun_up(path) for path in sorted(Path(folder).glob("*.nc"))]))
+    return [io.read(path, "spun_up") for path in sorted(Path(folder).glob("*.nc"))]
 
 
-def _spun_up(path):
-    """Table of a file of the queue, without the fragments."""
-    file = io.read(path, "spun_up")
-    table = file.drop_dims("fragment").to_dataframe().reset_index(drop=True)
-    reasons = kind_of("spun_up").variables["end_reason"].flags
-    table["end_reason"] = [reasons[value] for value in table["end_reason"]]
-    return table.assign(**{name: file.attrs[name] for name in ("material", "type", "drive")})
-
-
-def read_ensemble(grown, folder):
-    """Table of the grains that the queue of spin-ups has finished, with what each was as grown.
+def spun_up_table(files, grown=None):
+    """Table of the grains that the queue of spin-ups has finished.
 
     Parameters
     ----------
-    grown : path-like
-        A table of grains as grown, which may hold more of them.
-    folder : path-like
-        As of `read_spun_up`.
+    files : list of xarray.Dataset
+        From `spun_up_files`.
+    grown : pandas.DataFrame, optional
+        Table of grains as grown, which may hold more of them; what each was as grown is taken from it then.
 
     Returns
     -------
     pandas.DataFrame
         As `grain_table` makes it.
     """
-    marks = read_spun_up(folder)
-    grains = io.read(grown, "table").to_pandas()[list(GRAIN_COLUMNS)]
-    table = grain_table(grains, marks)
+    marks = pd.concat([_spun_up(file) for file in files])
+    if grown is None:
+        return grain_table(marks=marks)
+    table = grain_table(grown[list(GRAIN_COLUMNS)], grain_table(marks=marks))
     return table[table["drive"] != ""].reset_index(drop=True)
+
+
+def read_spun_up(folder):
+    """Table of the grains that the queue of spin-ups has finished, as `spun_up_table` makes it of `spun_up_files`."""
+    return spun_up_table(spun_up_files(folder))
+
+
+def _spun_up(file):
+    """Table of a file of the queue, without the fragments."""
+    table = file.drop_dims("fragment").to_dataframe().reset_index(drop=True)
+    reasons = kind_of("spun_up").variables["end_reason"].flags
+    table["end_reason"] = [reasons[value] for value in table["end_reason"]]
+    return table.assign(**{name: file.attrs[name] for name in ("material", "type", "drive")})
 
 
 def table_dataset(table, dim="grain"):

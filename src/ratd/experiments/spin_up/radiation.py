@@ -232,8 +232,8 @@ def destroyed_sizes(omega_disr, strength, around=DIFFUSE, inertia_ratio=None, co
     Parameters
     ----------
     omega_disr : callable
-        Angular velocity of disruption [rad s-1], (..., n), of sizes [m], (n,).
-    strength : float
+        Angular velocity of disruption [rad s-1], (...', n), of sizes [m], (n,).
+    strength : array_like, shape (...)
         U, above 0.
     around : Surroundings
     inertia_ratio : callable, optional
@@ -243,20 +243,29 @@ def destroyed_sizes(omega_disr, strength, around=DIFFUSE, inertia_ratio=None, co
 
     Returns
     -------
-    smallest, greatest : numpy.ndarray, shape (...)
+    smallest, greatest : numpy.ndarray, shape (..., ...')
         Where `omega_rat` first reaches `omega_disr` among the sizes `SEARCHED`, and where it falls below it again [m].
         NaN where it does not reach it; the greatest is infinite where it has not fallen below at their end.
 
     Raises
     ------
     InputError
-        If the strength is no number above 0.
+        If a strength is no number above 0.
     """
-    if not (np.isfinite(strength) and strength > 0.0):
+    strength = np.asarray(strength, dtype=float)
+    if not (np.isfinite(strength) & (strength > 0.0)).all():
         raise InputError(f"destroyed_sizes: the strength of the radiation is {strength}, but must be above 0")
     size = np.geomspace(*SEARCHED, _STEPS)
     ratio = 1.0 if inertia_ratio is None else inertia_ratio(size)
-    excess = np.log(omega_rat(size, strength, around, ratio, coefficient) / omega_disr(size))
+    torn = np.log(omega_disr(size))
+    # one strength after the other: all together would be large
+    ends = [_ends(size, np.log(omega_rat(size, one, around, ratio, coefficient)) - torn) for one in strength.ravel()]
+    smallest, greatest = (np.reshape(end, strength.shape + torn.shape[:-1]) for end in zip(*ends, strict=True))
+    return smallest, greatest
+
+
+def _ends(size, excess):
+    """Smallest and greatest size (...) at which `excess` (..., n) is above 0, as of `destroyed_sizes`."""
     above = excess >= 0.0
     first = above.argmax(axis=-1)
     # the first size beyond that is not destroyed, 0 where all are

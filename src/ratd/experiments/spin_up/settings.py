@@ -56,15 +56,18 @@ class Settings(Cells):
         """Constants of a material, dict of the arguments of `ratd.base.materials.Material`."""
         return asdict(self.materials[name])
 
-    def grow(self, material, kind, size):
-        """Settings of the growth of one cell."""
+    def growth(self, material, kind):
+        """Settings of the growth that all sizes of a material and type have in common."""
         return {
             "material": self.material(material),
             "type": kind,
-            "a_eff": float(size) * NM,
             "radii": self.radii,
             "migration": self.config["growth"]["migration"],
         }
+
+    def grow(self, material, kind, size):
+        """Settings of the growth of one cell."""
+        return self.growth(material, kind) | {"a_eff": float(size) * NM}
 
     def spin_up_of(self, drive, kind=None):
         """Part of the config on the spin-up, for one drive.

@@ -9,18 +9,20 @@ from ratd.base.materials import get_material
 from ratd.base.statistics import drawn_counts, equal_weights, slope_error, slope_of, weighted_line, weighted_parabola
 from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of, size_key
 
-__all__ = ["SPLIT", "curved_law", "curved_law_value", "size_law", "size_law_unit", "slopes"]
+__all__ = ["SPLIT", "curved_law", "curved_law_value", "size_law", "size_law_unit", "slopes", "unit_of"]
 
 SPLIT = 300e-9
 """Size [m] from which on omega_disr flattens in the paper (Sect. 8)."""
 
 
+def unit_of(material):
+    """sqrt(gamma/(rho a^3)) of a material with a = `SPLIT` [rad s-1], the unit of omega of `size_law`."""
+    return math.sqrt(material.surface_energy / (material.density * SPLIT**3))
+
+
 def size_law_unit(table, materials=None):
-    """sqrt(gamma/(rho a^3)) with a = `SPLIT` [rad s-1], the unit of omega of `size_law`, of each grain of a table."""
-    unit = {}
-    for name in table["material"].unique():
-        material = get_material(name, materials)
-        unit[name] = math.sqrt(material.surface_energy / (material.density * SPLIT**3))
+    """`unit_of` the material of each grain of a table [rad s-1]."""
+    unit = {name: unit_of(get_material(name, materials)) for name in table["material"].unique()}
     return table["material"].map(unit).to_numpy(float)
 
 
@@ -48,29 +50,7 @@ def size_law(table, mark="omega_disr", materials=None, seed=0):
         A row a type of at least two sizes: C, p with `_error`; scatter, the root mean square of the residuals of
         ln omega; n_grains.
     """
-    table = table[table[mark].astype(float) > 0]
-    rng = np.random.Generator(np.random.PCG64(seed))
-    rows = []
-    for kind, part in table.groupby("type", sort=False):
-        if size_key(part["a_eff"]).nunique() < 2:
-            continue
-        x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
-        y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
-        weights = equal_weights(cell_of(part))
-        slope, level = weighted_line(x, y, weights)
-        drawn_slopes, levels = weighted_line(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
-        rows.append(
-            {
-                "type": kind,
-                "C": float(np.exp(level)),
-                "C_error": float(np.std(np.exp(levels), ddof=1)),
-                "p": float(-slope),
-                "p_error": float(np.std(drawn_slopes, ddof=1)),
-                "scatter": float(np.sqrt(np.average((y - level - slope * x) ** 2, weights=weights))),
-                "n_grains": len(part),
-            }
-        )
-    return pd.DataFrame(rows)
+    return _laws(table, mark, materials, seed, "Cp", weighted_line)
 
 
 def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
@@ -95,30 +75,38 @@ def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
     -------
     pandas.DataFrame
         A row a type of at least three sizes: C, p, q with `_error`; scatter, the root mean square of the residuals of
-        ln omega; n_grains; significance, |q| over its error: above 3 a straight power law does not hold.
+        ln omega; n_grains.
     """
+    return _laws(table, mark, materials, seed, "Cpq", weighted_parabola)
+
+
+def _laws(table, mark, materials, seed, names, fit):
+    """`size_law` and `curved_law`: a row a type, `fit` being what finds as many numbers as there are names."""
     table = table[table[mark].astype(float) > 0]
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
     for kind, part in table.groupby("type", sort=False):
-        if size_key(part["a_eff"]).nunique() < 3:
+        if size_key(part["a_eff"]).nunique() < len(names):
             continue
         x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
         y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
         weights = equal_weights(cell_of(part))
-        bend, slope, level = weighted_parabola(x, y, weights)
-        bends, drawn_slopes, levels = weighted_parabola(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
-        # a replicate may have drawn too few sizes for a curve
-        errors = [float(np.nanstd(values, ddof=1)) for values in (np.exp(levels), drawn_slopes, bends)]
+        powers = fit(x, y, weights)
+        drawn = fit(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)
         row = {"type": kind}
-        for name, value, error in zip("Cpq", (np.exp(level), -slope, -bend), errors, strict=True):
-            row |= {name: float(value), f"{name}_error": error}
-        residual = y - level - slope * x - bend * x**2
+        for name, value, values in zip(names, _numbers(powers), _numbers(drawn), strict=True):
+            # a replicate may have drawn too few sizes
+            row |= {name: float(value), f"{name}_error": float(np.nanstd(values, ddof=1))}
+        residual = y - sum(power * x**k for k, power in enumerate(reversed(powers)))
         row["scatter"] = float(np.sqrt(np.average(residual**2, weights=weights)))
-        row["n_grains"] = len(part)
-        row["significance"] = abs(row["q"]) / row["q_error"] if row["q_error"] > 0 else np.inf
-        rows.append(row)
+        rows.append(row | {"n_grains": len(part)})
     return pd.DataFrame(rows)
+
+
+def _numbers(powers):
+    """C, p, ... of the factors of the powers of ln a_eff, the highest first."""
+    *higher, level = powers
+    return [np.exp(level), *(-power for power in reversed(higher))]
 
 
 def curved_law_value(a_eff, C, p, q=0.0):

@@ -10,7 +10,7 @@ One seed of all materials, types and sizes comes before the next, so that what i
 smaller one. Each grain becomes a row of a small table in docs/reproduction/data/NAME, a file a drive, material and
 type: its marks of disruption, what it was just before, and the fragments that left. A row that is there is never
 computed again, also not with other source: it says itself which source it is of. docs/quasi_static.md tells of the
-ensemble: after more rows `python -m ratd.validation.quasi_static_page redraw` writes it anew.
+ensemble: after more rows `python -m ratd.validation.quasi_static_document redraw` writes it anew.
 """
 
 import sys
@@ -68,8 +68,7 @@ def tasks(plan, data):
 
 def _table(plan, data, drive, material, kind):
     """The table of a drive, material and type."""
-    growth = {name: value for name, value in plan.grow(material, kind, 0.0).items() if name != "a_eff"}
-    settings = {"growth": growth, "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
+    settings = {"growth": plan.growth(material, kind), "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
     path = Path(data, drive, f"{material}_{kind}.nc")
     return Table(path, "spun_up", _KEY, plan.materials[material], settings)
 

@@ -5,20 +5,16 @@ import pandas as pd
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
-from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import as_frame, size_key
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, destroyed_sizes
-from ratd.experiments.spin_up.size_law import SPLIT, size_law
-from ratd.pipeline.documents import Measured
+from ratd.experiments.spin_up.size_law import SPLIT, size_law, unit_of
 
-__all__ = ["COMPUTED", "NONE", "grown_inertia", "is_extrapolated", "limits", "power_law", "printed_law", "surviving"]
+__all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "power_law", "printed_law", "surviving"]
 
 COMPUTED = (50e-9, 550e-9)
 """Sizes [m] that were spun up; beyond them a law is extrapolated."""
-NONE = "none"
-"""What stands in a document where no size is destroyed."""
 
 
 def power_law(C, p, material):
@@ -34,9 +30,8 @@ def power_law(C, p, material):
     callable
         Of sizes [m] (n,) -> omega [rad s-1] (..., n).
     """
-    unit = np.sqrt(material.surface_energy / (material.density * SPLIT**3))
     C, p = np.asarray(C)[..., None], np.asarray(p)[..., None]
-    return lambda size: C * unit * (np.asarray(size) / SPLIT) ** -p
+    return lambda size: C * unit_of(material) * (np.asarray(size) / SPLIT) ** -p
 
 
 def printed_law(grown, material, kind):
@@ -157,6 +152,7 @@ def surviving(
         If a material or type that was spun up has too few grown grains for a law, or a strength is not above 0.
     """
     table = as_frame(table, "surviving", ("material", "type", "a_eff", mark))
+    strengths = np.atleast_1d(np.asarray(strengths, dtype=float))
     laws = size_law(table, mark, materials).set_index("type")
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
@@ -172,56 +168,29 @@ def surviving(
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
             for which, (omega, spread) in candidates.items():
-                for strength in np.atleast_1d(np.asarray(strengths, dtype=float)):
-                    given = strength, around, ratio, coefficient
-                    row = {"material": name, "type": kind, "law": which, "strength": float(strength)}
-                    rows.append(row | _sizes(omega, spread, *given))
+                found = _sizes(omega, spread, strengths, around, ratio, coefficient)
+                rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
 
 
-def limits(table, grown, strengths=(1.0, 1e2, 1e4), **options):
-    """Numbers for a document: smallest sizes that radiation destroys.
-
-    Parameters
-    ----------
-    table, grown
-        As of `surviving`.
-    strengths : sequence of float
-        U of the radiation.
-    **options
-        Of `surviving`, but `porous`.
-
-    Returns
-    -------
-    dict
-        "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
-        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain. With
-        " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them.
-    """
-    values = {}
-    for porous in (False, True):
-        for row in surviving(table, grown, strengths, porous=porous, **options).to_dict("records"):
-            key = f"radiation.{row['material']} {row['type']} {row['strength']:g} {row['law']}"
-            key += " porous" if porous else ""
-            for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
-                found = np.isfinite(row[size])
-                values[key + end] = Measured(row[size] / NM, error / NM) if found else NONE
-    return values
-
-
-def _sizes(omega, spread, *given):
-    """Numbers of a row of `surviving` for the best law and the drawn ones."""
-    smallest, greatest = (float(size) for size in destroyed_sizes(omega, *given))
-    row = {"a_disr": smallest, "a_disr_error": np.nan, "low": np.nan, "high": np.nan, "greatest": greatest}
-    share = float(np.isfinite(smallest))
-    if spread is not None:
-        drawn = destroyed_sizes(spread, *given)[0]
-        share = float(np.isfinite(drawn).mean())
-        drawn = drawn[np.isfinite(drawn)]
-        if np.isfinite(smallest) and len(drawn) > 1:
-            row["a_disr_error"] = float(np.std(drawn, ddof=1))
-            row["low"], row["high"] = (float(size) for size in np.quantile(drawn, [0.16, 0.84]))
-    return row | {"share": share, "extrapolated": bool(np.isfinite(smallest) and is_extrapolated(smallest))}
+def _sizes(omega, spread, strengths, *given):
+    """Numbers of the rows of `surviving` for the best law and the drawn ones, a dict a strength."""
+    ends = destroyed_sizes(omega, strengths, *given)
+    several = [None] * len(strengths) if spread is None else destroyed_sizes(spread, strengths, *given)[0]
+    rows = []
+    for strength, smallest, greatest, drawn in zip(
+        strengths.tolist(), *(end.tolist() for end in ends), several, strict=True
+    ):
+        row = {"strength": strength, "a_disr": smallest, "a_disr_error": np.nan, "low": np.nan, "high": np.nan}
+        row |= {"greatest": greatest, "share": float(np.isfinite(smallest))}
+        if drawn is not None:
+            row["share"] = float(np.isfinite(drawn).mean())
+            drawn = drawn[np.isfinite(drawn)]
+            if np.isfinite(smallest) and len(drawn) > 1:
+                row["a_disr_error"] = float(np.std(drawn, ddof=1))
+                row["low"], row["high"] = (float(size) for size in np.quantile(drawn, [0.16, 0.84]))
+        rows.append(row | {"extrapolated": bool(np.isfinite(smallest) and is_extrapolated(smallest))})
+    return rows
 
 
 def _cell(grown, material, kind):

@@ -12,7 +12,6 @@ from ratd.pictures.style import (
     GREY,
     HIGHLIGHT,
     ONE_COLUMN,
-    TWO_COLUMNS,
     drive_of,
     drive_text,
     logarithmic,
@@ -63,43 +62,11 @@ def figure4(runs, marks=None, drive=None):
     marks = _marks(runs, marks)
     title = f"{_cell(runs)}, {plural(len(runs), 'grain')}\n{drive_text(drive_of(runs) if drive is None else drive)}"
     figure = new_figure(ONE_COLUMN, 1.5 * ONE_COLUMN, title)
-    _draw(figure.subplots(3, 1, sharex=True, squeeze=False), [(runs, marks)])
+    _draw(figure.subplots(3, 1, sharex=True), runs, marks)
     return figure
 
 
-@styled
-def figure4_beside(groups):
-    """The same for several groups of runs of one cell side by side, on the same axes.
-
-    Parameters
-    ----------
-    groups : dict of str to sequence of xarray.Dataset
-        What stands above a column -> its runs.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        See `figure4`.
-
-    Raises
-    ------
-    InputError
-        If there is no group, or one without a run.
-    """
-    if not groups:
-        raise InputError("figure4: give at least one group of runs")
-    groups = {name: list(runs) for name, runs in groups.items()}
-    parts = [(runs, _marks(runs)) for runs in groups.values()]
-    figure = new_figure(TWO_COLUMNS, 0.66 * TWO_COLUMNS, _cell([run for runs in groups.values() for run in runs]))
-    panels = figure.subplots(3, len(groups), sharex=True, sharey="row", squeeze=False)
-    _draw(panels, parts)
-    for axes, (name, runs) in zip(panels[0], groups.items(), strict=True):
-        axes.set_title(f"{name}, {plural(len(runs), 'grain')}\n{axes.get_title('right')}")
-        axes.set_title("", loc="right")
-    return figure
-
-
-def _marks(runs, marks=None):
+def _marks(runs, marks):
     """The marks of some runs, found where they are not given."""
     if not runs:
         raise InputError("figure4: give at least one run")
@@ -109,34 +76,28 @@ def _marks(runs, marks=None):
     return marks
 
 
-def _draw(panels, parts):
-    """Columns of panels (3, n) for n pairs of runs and their marks."""
-    every = [run for runs, _ in parts for run in runs]
-    mass_power, mass_unit = power_of_ten([run.attrs["initial_mass"] for run in every])
-    stress_power, stress_unit = power_of_ten(np.concatenate([run["total_stress"].values for run in every]))
-    units = 10.0**mass_power, 1.0, 10.0**stress_power
-    for column, (runs, marks) in zip(panels.T, parts, strict=True):
-        _lines(column, runs, marks, units)
-        for axes, text in zip(
-            column, ("25 % of the mass lost", "25 % of the contacts lost", "peak stress"), strict=True
-        ):
-            axes.set_title(f"dots: {text}", loc="right", fontsize=7.5, pad=2)
-            axes.set_ylim(bottom=0)
-        column[2].set_xlabel(r"angular velocity $\omega$ [rad s$^{-1}$]")
-    top, middle, bottom = panels[:, 0]
+def _draw(panels, runs, marks):
+    """Three panels of some runs with their marks."""
+    mass_power, mass_unit = power_of_ten([run.attrs["initial_mass"] for run in runs])
+    stress_power, stress_unit = power_of_ten(np.concatenate([run["total_stress"].values for run in runs]))
+    _lines(panels, runs, marks, (10.0**mass_power, 1.0, 10.0**stress_power))
+    for axes, text in zip(panels, ("25 % of the mass lost", "25 % of the contacts lost", "peak stress"), strict=True):
+        axes.set_title(f"dots: {text}", loc="right", fontsize=7.5, pad=2)
+        axes.set_ylim(bottom=0)
+    top, middle, bottom = panels
     top.set_ylabel(rf"mass $M$ [{mass_unit}kg]")
     middle.set_ylabel(r"contacts $N_\mathrm{con}$")
     bottom.set_ylabel(rf"total stress $\sigma_\Sigma$ [{stress_unit}Pa]")
+    bottom.set_xlabel(r"angular velocity $\omega$ [rad s$^{-1}$]")
     bottom.set_xscale("log")
-    bottom.set_xlim(*_omega_limits(every, [mark for _, marks in parts for mark in marks]))
+    bottom.set_xlim(*_omega_limits(runs, marks))
     logarithmic(bottom.xaxis)
     middle.set_ylim(top=1.25 * middle.get_ylim()[1])  # room for the arrow
-    for column, (runs, marks) in zip(panels.T, parts, strict=True):
-        _point_at_peak(column[1], runs, marks)
-        if all(map(_in_the_paper, runs)):
-            for axes in column:
-                axes.axvline(FIRST_LOSS[1], color="black", lw=0.8, ls="--", zorder=1)
-            _name_the_paper(column[0])
+    _point_at_peak(middle, runs, marks)
+    if all(map(_in_the_paper, runs)):
+        for axes in panels:
+            axes.axvline(FIRST_LOSS[1], color="black", lw=0.8, ls="--", zorder=1)
+        _name_the_paper(top)
 
 
 def _name_the_paper(axes):
@@ -148,7 +109,7 @@ def _name_the_paper(axes):
     axes.annotate("paper: mass\nconstant\nup to here", (FIRST_LOSS[1], 0.9), **place)
 
 
-def _lines(column, runs, marks, units):
+def _lines(panels, runs, marks, units):
     """Lines and dots of some runs in three panels."""
     kinds = [str(run.attrs.get("type") or "") for run in runs]
     colour = type_style(kinds)[kinds[0]]["color"]
@@ -166,7 +127,7 @@ def _lines(column, runs, marks, units):
             (mark["omega_contacts_75"], left * run.attrs["initial_n_contacts"]),
             (mark["omega_disr"], mark["stress_peak"]),
         )
-        for axes, line, (x, y), unit in zip(column, values, dots, units, strict=True):
+        for axes, line, (x, y), unit in zip(panels, values, dots, units, strict=True):
             axes.plot(omega[: whole + 1], line[: whole + 1] / unit, **look, alpha=alpha)
             axes.plot(omega[whole:], line[whole:] / unit, **look | {"lw": 0.7}, alpha=REMNANT * alpha)
             axes.plot(x, y / unit, **DOT)

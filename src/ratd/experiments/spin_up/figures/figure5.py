@@ -87,8 +87,7 @@ def figure5(run, mark=None, drive=None):
     how_far, pull = _moved_scale(moved), force_scale(shown)
     for column, k, at, frame, distance in zip(panels.T, chosen, places, shown, moved, strict=True):
         colours = MOVED(how_far(np.maximum(distance, how_far.vmin)))[:, :3], force_colours(frame.force, pull)
-        for axes, colour in zip(column, colours, strict=True):
-            _show(axes, at, frame.radius, colour, box)
+        _show(column, at, frame.radius, colours, box)
         column[0].set_title(_words(run, k, frame, omega_disr), pad=3)
         dropped = run.sizes["monomer"] - len(frame.radius)
         inside = np.array([1, -1, 1, -1]) * (np.repeat(at[:, :2], 2, axis=1) - box) > -frame.radius[:, None]
@@ -135,16 +134,16 @@ def _words(run, k, frame, omega_disr):
     return rf"$\omega/\omega_\mathrm{{disr}}$ = {ratio:.2f}" f"\n$N_\\mathrm{{con}}$ = {contacts}, {whole}"
 
 
-def _show(axes, at, radius, colour, box):
-    """Spheres in a panel with axes in nm that shows a box [m]."""
+def _show(panels, at, radius, colours, box):
+    """Spheres in panels with axes in nm that show a box [m], in each with other colours."""
     centre = np.array([box[0] + box[1], box[2] + box[3], 0.0]) / 2
     half = 0.5 * max(box[1] - box[0], box[3] - box[2])
-    picture = render(at - centre, radius, colour, half, PIXELS)
     (x, y, _), reach = nanometres(centre), nanometres(half)
-    axes.imshow(picture, extent=(x - reach, x + reach, y - reach, y + reach), interpolation="antialiased", zorder=2)
     left, right, bottom, top = nanometres(box)
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    axes.set_axis_off()
+    for axes, picture in zip(panels, render(at - centre, radius, colours, half, PIXELS), strict=True):
+        axes.imshow(picture, extent=(x - reach, x + reach, y - reach, y + reach), interpolation="antialiased", zorder=2)
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+        axes.set_axis_off()
 
 
 def _scale_bar(axes, box):

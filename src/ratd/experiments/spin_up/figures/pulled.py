@@ -20,7 +20,7 @@ def pulled(table, spun):
     Parameters
     ----------
     table : pandas.DataFrame
-        Of `ratd.experiments.spin_up.pulled.read`.
+        Of `ratd.experiments.spin_up.pulled.read_pulled`.
     spun : pandas.DataFrame
         Of `ratd.experiments.spin_up.grain_table.read_spun_up`.
 

@@ -1,4 +1,4 @@
-"""Studies beside the ensemble: what another normal force, other radii of monomers and the printed equations change.
+"""Studies: what another normal force, other radii of monomers and the printed equations change.
 
 Their rows come from `ratd.experiments.spin_up.study`. Where a study has grains of the ensemble, each is compared with
 itself. Where its monomers are others, so are its grains, and the geometric means of the cells are compared.
@@ -13,18 +13,15 @@ import pandas as pd
 from ratd.aggregates.growth import grain_radii
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
-from ratd.base.statistics import equal_weights, mean_of, median_of, slope_error, slope_of
+from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
 from ratd.experiments.spin_up.cells import cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
-from ratd.experiments.spin_up.grain_table import read_spun_up
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.run_files import read_table
-from ratd.pipeline import io
-from ratd.pipeline.documents import Measured
+from ratd.base.measured import Measured, median
 
-__all__ = ["DATA", "MARKS", "cell_ratio", "carried_over", "findings", "paired", "studies", "with_radii"]
+__all__ = ["MARKS", "cell_ratio", "carried_over", "of_studies", "paired", "studies", "with_radii"]
 
-DATA = Path("docs/reproduction/data")
 ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
 EQUAL = ("equal_30nm", "equal_41nm")
 OTHER_MONOMERS = (*EQUAL, "second_reading")
@@ -34,15 +31,15 @@ POWERS = {1: "<a>", 2: "<a²>^(1/2)", 3: "<a³>^(1/3)"}
 """Means of the radii of a grain's monomers that may stand for <a_mon> in Eq. 33."""
 
 
-def with_radii(table, folder, wanted=None):
+def with_radii(table, files, wanted=None):
     """A table of grains with means of the radii of their monomers, which are drawn anew.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        From `read_spun_up`.
-    folder : path-like
-        Where its rows are, which say how their grains were grown.
+        From `spun_up_table`.
+    files : list of xarray.Dataset
+        Those that it is of, which say how their grains were grown.
     wanted : (n,) array_like of bool, optional
         The grains that are to have them, all when not given.
 
@@ -52,8 +49,8 @@ def with_radii(table, folder, wanted=None):
         With ``radius_k`` [m], <a^k>^(1/k) of the grain, for each power k of `POWERS`.
     """
     growth = {}
-    for path in sorted(Path(folder).glob("*.nc")):
-        own = json.loads(io.read(path, "spun_up").attrs["settings"])["growth"]
+    for file in files:
+        own = json.loads(file.attrs["settings"])["growth"]
         growth[own["material"]["name"], own["type"]] = RadiusDistribution(**own["radii"])
     wanted = np.ones(len(table), dtype=bool) if wanted is None else np.asarray(wanted)
     means = np.full((len(table), len(POWERS)), np.nan)
@@ -65,40 +62,43 @@ def with_radii(table, folder, wanted=None):
     return table.assign(**{f"radius_{power}": means[:, k] for k, power in enumerate(POWERS)})
 
 
-def studies(data=DATA):
+def studies(data, ensemble, literal):
     """Tables of the studies, the ensemble among them.
 
     Parameters
     ----------
     data : path-like
         Folder of all rows.
+    ensemble : list of xarray.Dataset
+        Files of the ensemble, from `spun_up_files`.
+    literal : pandas.DataFrame
+        Grains with the printed terms of the frame.
 
     Returns
     -------
     dict of str to pandas.DataFrame
         Name of a study -> its table; those with other monomers, and grains of the ensemble of the same materials and
-        sizes, `with_radii`. ``literal``: the grains with the printed terms of the frame.
+        sizes, `with_radii`. ``literal``: as given.
 
     Raises
     ------
     FileError
         If a study has no rows.
     """
-    data = Path(data)
     found = {}
-    for name in (ENSEMBLE, DMT, *OTHER_MONOMERS, PRINTED):
-        folder = data / name / ("literal" if name == PRINTED else "prescribed")
-        if not any(folder.glob("*.nc")):
+    for name in (DMT, *OTHER_MONOMERS, PRINTED):
+        folder = Path(data, name, "literal" if name == PRINTED else "prescribed")
+        files = spun_up_files(folder)
+        if not files:
             raise FileError(
                 f"{folder}: holds no rows; `python -m ratd.experiments.spin_up.study --study {name}` makes them"
             )
-        found[name] = read_spun_up(folder)
+        found[name] = spun_up_table(files)
         if name in OTHER_MONOMERS:
-            found[name] = with_radii(found[name], folder)
-    wanted = _in_cells_of(found[ENSEMBLE], pd.concat([found[name] for name in OTHER_MONOMERS]))
-    found[ENSEMBLE] = with_radii(found[ENSEMBLE], data / ENSEMBLE / "prescribed", wanted)
-    found["literal"] = read_table(data / "literal.nc")
-    return found
+            found[name] = with_radii(found[name], files)
+    table = spun_up_table(ensemble)
+    wanted = _in_cells_of(table, pd.concat([found[name] for name in OTHER_MONOMERS]))
+    return found | {ENSEMBLE: with_radii(table, ensemble, wanted), "literal": literal}
 
 
 def _in_cells_of(table, other):
@@ -197,7 +197,7 @@ def _levelled(table, mark, k, alpha):
     return table.assign(level=np.exp(y - alpha * x), lever=np.exp(x))
 
 
-def findings(tables):
+def of_studies(tables):
     """Values of the slots of a document on the studies.
 
     Parameters
@@ -244,8 +244,7 @@ def _same(name, table, beside, sign="."):
     values = {f"{name}{sign}grains": len(pairs)}
     for kind, part in _parts(pairs):
         for mark in MARKS:
-            found = median_of(part[f"{mark}_ratio"])
-            values[f"{name}{sign}{kind} {mark}"] = Measured(found["median"], found["error"])
+            values[f"{name}{sign}{kind} {mark}"] = median(part[f"{mark}_ratio"])
     return values
 
 
@@ -255,8 +254,7 @@ def _over_table_3(table):
     values = {}
     for kind, part in _parts(table):
         for mark in MARKS:
-            found = median_of(part[mark] / law[part.index])
-            values[f"{PRINTED}.{kind} {mark} table 3"] = Measured(found["median"], found["error"])
+            values[f"{PRINTED}.{kind} {mark} table 3"] = median(part[mark] / law[part.index])
     return values
 
 

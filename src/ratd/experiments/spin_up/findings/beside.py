@@ -1,4 +1,4 @@
-"""Numbers that docs/reproduction.md tells of the studies beside the ensemble, from their tables."""
+"""What is told beside the ensemble: other ways to compute, pairs, printed formulae, LAMMPS, heat, Tables 1 and 2."""
 
 import math
 
@@ -6,46 +6,37 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.materials import get_material
-from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
-from ratd.experiments.spin_up.claims import all_of, is_within
+from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
-from ratd.experiments.spin_up.cross_validation import cross_validation
-from ratd.experiments.spin_up.eq33 import eq33
-from ratd.experiments.spin_up.findings import MARK, median
+from ratd.experiments.spin_up.findings.ensemble import MARK
 from ratd.experiments.spin_up.formulae import DAMPING, formula_effects
-from ratd.experiments.spin_up.fragmentation import exponents
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import effect
-from ratd.experiments.spin_up.printed import PAIR_ERROR, PAPER_MEAN_RADIUS, TABLE_3, VISCOUS_EFFECT
-from ratd.experiments.spin_up.size_law import SPLIT, curved_law
+from ratd.experiments.spin_up.printed import PAIR_ERROR, VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
 from ratd.laws.contact_constants import equilibrium_contact_radius
 from ratd.laws.johnson_kendall_roberts import dissipation_time
-from ratd.pipeline.documents import Measured
+from ratd.base.measured import Measured, median
 
 __all__ = [
-    "composition_tables", "of_curve", "of_formulae", "of_fragments", "of_heat", "of_lammps", "of_pairs",
-    "of_prediction", "of_printed_pairs", "of_ways", "recomputed",
+    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_pairs",
+    "of_printed_pairs", "of_ways", "recomputed",
 ]  # fmt: skip
 
-EXAMPLE = ("q-S", "BAM1", 400 * NM)
-"""The grain of which the document works out omega."""
 PAIR_RADII = (10 * NM, 100 * NM)
 """The smallest and the largest monomers of Fig. 10."""
 PAIR_SHARE = 0.8 / 2.8
 """Share of their own moments of inertia, 2/5 m a^2 each, in that of two touching spheres, m a^2 each besides."""
-CURVED = 2.0
-"""So many standard errors of q from 0 reject a straight power of size."""
 
 
 def of_ways(table):
     """What the rolling limit and the viscous time do, from the table of Fig. 9 of driven grains."""
     rolled = {row["type"]: row for row in effect(table, "xi_c", MARK).to_dict("records") if row["value"] > 6e-9}
     values = {f"ways.{kind} xi": Measured(row["median"], row["error"]) for kind, row in rolled.items()}
-    values["ways.holds xi"] = all_of(is_within(value, 0.95, 1.05) for value in values.copy().values())
+    values["ways.holds xi"] = all_of(is_within(value, 0.95, 1.05) for value in values.values())
     time, printed = VISCOUS_EFFECT
     slow = effect(table, "T_vis", MARK)
     (row,) = slow[(slow["type"] == "BAM2") & np.isclose(slow["value"], time, atol=0.0)].to_dict("records")
@@ -111,66 +102,12 @@ def of_formulae(table):
     }
 
 
-def of_curve(table, grown):
-    """The curved law, and the example.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Driven grains.
-    grown : pandas.DataFrame
-        All grains as grown, for the printed omega of the example.
-    """
-    law = curved_law(table, MARK).set_index("type")
-    values, bent = {}, []
-    for kind, row in law.iterrows():
-        values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
-        values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
-        bent += [kind] if abs(row["q"]) > CURVED * row["q_error"] else []
-    values["curve.rejected"] = " and ".join(bent) or "no type"
-    material, kind, size = EXAMPLE
-    row, own = law.loc[kind], get_material(material)
-    x = math.log(size / SPLIT)
-    unit = math.sqrt(own.surface_energy / (own.density * SPLIT**3))
-    values["example.omega"] = row["C"] * unit * math.exp(-row["p"] * x - row["q"] * x * x)
-    cell = grown[
-        (grown["material"] == material) & (grown["type"] == kind) & np.isclose(grown["a_eff"], size, atol=1e-12)
-    ]
-    values["example.printed"] = eq33(
-        size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
-        cell["filling_factor"].mean(), *TABLE_3[material, kind],
-    )  # fmt: skip
-    return values
-
-
-def of_prediction(table):
-    """How well laws predict grains of sizes that they were not fitted to."""
-    table = table[table[MARK] > 0]
-    found = cross_validation(table, MARK, by="size")
-    return {
-        f"predict.{row['predictor']} {row['type']}": Measured(row["scatter"], row["error"])
-        for row in found.to_dict("records")
-    }
-
-
 def recomputed(older, newer):
     """Grains of two tables, the newer over the older: how many, and the median with its error."""
     keys = ["material", "type", "size", "seed"]
     older, newer = (table.assign(size=size_key(table["a_eff"])) for table in (older, newer))
     pairs = newer.merge(older, on=keys, suffixes=("", "_older"))
-    found = median_of(pairs[MARK] / pairs[f"{MARK}_older"])
-    return {"check.n": len(pairs), "check.ratio": Measured(found["median"], found["error"])}
-
-
-def of_fragments(fragments):
-    """Exponents of the sizes of the fragments of the first half of the mass, and the large pieces of a grain."""
-    values = {}
-    for row in exponents(fragments).to_dict("records"):
-        start = f"fragments.{row['type']} {row['size_class']}"
-        values[f"{start} exponent"] = f"{row['exponent']:.2f} ({row['low']:.2f}–{row['high']:.2f})"
-        values[f"{start} pieces"] = Measured(row["large_pieces"], row["large_pieces_error"])
-        values[f"{start} justified"] = row["probability"]
-    return values
+    return {"check.n": len(pairs), "check.ratio": median(pairs[MARK] / pairs[f"{MARK}_older"])}
 
 
 def of_lammps(table):

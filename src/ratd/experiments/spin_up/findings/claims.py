@@ -8,15 +8,15 @@ import math
 
 import numpy as np
 
-from ratd.base.statistics import mean_of, median_of, rank_correlation
+from ratd.base.statistics import equal_weights, mean_of, median_of, rank_correlation, slope_error, slope_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
-from ratd.experiments.spin_up.findings import MARK, median, middle, of_class
+from ratd.experiments.spin_up.findings.ensemble import MARK, middle, of_class
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_share
-from ratd.pipeline.documents import Measured
+from ratd.base.measured import Measured, median
 
-__all__ = ["claims", "fragment_values", "grown_claims", "is_above", "is_below", "is_within"]
+__all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
 
 BAM = ("BAM1", "BAM2")
 
@@ -33,8 +33,7 @@ def is_below(found, limit):
 
 def is_within(found, low, high):
     """Verdict: low < found < high."""
-    verdicts = {is_above(found, low), is_below(found, high)}
-    return "no" if "no" in verdicts else "open" if "open" in verdicts else "yes"
+    return all_of([is_above(found, low), is_below(found, high)])
 
 
 def all_of(verdicts):
@@ -51,7 +50,7 @@ def claims(letter, table, fragments):
     letter : str
         The first letter of the names.
     table : pandas.DataFrame
-        As `ratd.experiments.spin_up.findings.beside_print` returns it.
+        As `ratd.experiments.spin_up.findings.ensemble.beside_print` returns it.
     fragments : pandas.DataFrame
         As `ratd.experiments.spin_up.fragmentation.fragment_table` returns it.
 
@@ -60,8 +59,7 @@ def claims(letter, table, fragments):
     dict
         Name of a slot -> value; verdicts begin with the letter and ``holds``.
     """
-    values = {} | _where(letter, table) | _how(letter, table, fragments) | _shapes(letter, table)
-    return values
+    return _where(letter, table) | _how(letter, table, fragments) | _shapes(letter, table)
 
 
 def _where(letter, table):
@@ -77,8 +75,7 @@ def _where(letter, table):
     for kind in TYPES:
         part = of_class(table[table["type"] == kind], "large")
         x, y = np.log(part["a_eff"]), np.log(part["omega_disr"])
-        slope, error = _slope(x, y, part)
-        slopes_above.append(Measured(slope, error))
+        slopes_above.append(_slope(x, y, part))
     values[f"{letter}.holds limit"] = all_of(is_within(slope, -0.25, 0.25) for slope in slopes_above)
     values[f"{letter}.steepest"] = min(slope.value for slope in slopes_above)
     values[f"{letter}.flattest"] = max(slope.value for slope in slopes_above)
@@ -91,10 +88,8 @@ def _where(letter, table):
 
 
 def _slope(x, y, part):
-    from ratd.base.statistics import equal_weights, slope_error, slope_of
-
     slope, influence = slope_of(x, y, part["material"], equal_weights(cell_of(part)))
-    return slope, slope_error(influence)
+    return Measured(slope, slope_error(influence))
 
 
 def _how(letter, table, fragments):
@@ -180,14 +175,3 @@ def grown_claims(grown):
 
 
 _AS_START = {f"axis_{axis}": f"axis_{axis}_start" for axis in "abc"}
-
-
-def fragment_values(letter, fragments):
-    """Where the mass goes that leaves while the first half does: shares [%] by type and class of size."""
-    values = {}
-    for name, (low, high) in {"small": (40, 275), "large": (275, 600)}.items():
-        part = fragments[(fragments["a_eff"] / NM).between(low, high)]
-        for row in fragment_shares(part, "half").to_dict("records"):
-            start = f"{letter}.fragments {row['type']} {name} {row['class']}"
-            values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
-    return values

@@ -13,11 +13,12 @@ from ratd.engine.state import monomer_rows
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import pulled as told
 from ratd.experiments.spin_up.figures.pulled import pulled as drawn
+from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.plan import load
 from ratd.pipeline.queue import work
-from ratd.validation import pulled
+from ratd.validation import pulling
 
-ONE_OF_EACH = {"usual": pulled.BOX["usual"] | {"squeeze_rate": 2e-5, "strain_rate": 2e-5}}
+ONE_OF_EACH = {"usual": pulling.BOX["usual"] | {"squeeze_rate": 2e-5, "strain_rate": 2e-5}}
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def grain():
 
 
 def test_lengthwise_the_longest_axis_lies_along_x_and_contacts_stay(grain):
-    turned = pulled.lengthwise(grain)
+    turned = pulling.lengthwise(grain)
     np.testing.assert_array_equal(turned.contacts, grain.contacts)
     centred = turned.position - turned.mass @ turned.position / turned.mass.sum()
     spread = np.sqrt(turned.mass @ centred**2)
@@ -36,11 +37,11 @@ def test_lengthwise_the_longest_axis_lies_along_x_and_contacts_stay(grain):
 def test_names_of_the_axes_are_those_of_a_relaxed_grain(grain):
     rows = monomer_rows(relax(grain))
     spread = rows[:, MASS] @ rows[:, X : X + 3] ** 2
-    assert [pulled._AXIS[name] for name in told.AXES] == np.argsort(spread).tolist()
+    assert [pulling._AXIS[name] for name in told.AXES] == np.argsort(spread).tolist()
 
 
 def test_the_box_squeezes_to_the_filling_factor_of_the_grain(grain):
-    (pull,) = pulled.in_the_box(grain, ONE_OF_EACH)
+    (pull,) = pulling.in_the_box(grain, ONE_OF_EACH)
     assert pull["phi"] == pytest.approx(grain.shape.filling_factor, rel=0.01)
     assert 0.3 < pull["kept"] <= 1.0 and pull["new"] >= 0.0 and pull["strength"] > 0.0
     assert pull["peak"] >= pull["strength"]
@@ -48,21 +49,21 @@ def test_the_box_squeezes_to_the_filling_factor_of_the_grain(grain):
 
 def test_too_large_and_too_dense_grains_are_left_out(grain):
     small = {"usual": ONE_OF_EACH["usual"] | {"up_to_nm": 80}}
-    dense = {"usual": ONE_OF_EACH["usual"] | {"part": 1.01 * pulled.DENSEST / grain.shape.filling_factor}}
-    assert pulled.in_the_box(grain, small) == [] and pulled.in_the_box(grain, dense) == []
+    dense = {"usual": ONE_OF_EACH["usual"] | {"part": 1.01 * pulling.DENSEST / grain.shape.filling_factor}}
+    assert pulling.in_the_box(grain, small) == [] and pulling.in_the_box(grain, dense) == []
 
 
 def test_nothing_becomes_of_the_contacts_of_a_grain_that_is_hardly_squeezed(grain):
-    turned = pulled.lengthwise(grain)
+    turned = pulling.lengthwise(grain)
     ends = (turned.position + sign * turned.radius[:, None] for sign in (1, -1))
     spread = 1.2 * (next(ends).max(axis=0) - next(ends).min(axis=0)).max()
     start = 4 / 3 * np.pi * (turned.radius**3).sum() / spread**3
     squeezed = ratd.compress(turned, 1e-5, 1.05 * start, box_length=spread, snapshots=(), balance=False)
-    assert pulled.became(turned, squeezed) == {"kept": 1.0, "new": 0.0, "across": 0.0}
+    assert pulling.became(turned, squeezed) == {"kept": 1.0, "new": 0.0, "across": 0.0}
 
 
 def test_omega_by_the_ends_is_that_of_the_force(grain):
-    pulls = pulled.by_its_ends(grain, {"usual": pulled.ENDS["usual"]})
+    pulls = pulling.by_its_ends(grain, {"usual": pulling.ENDS["usual"]})
     assert [pull["axis"] for pull in pulls] == list(told.AXES)
     state = relax(grain)
     rows = monomer_rows(state)
@@ -74,19 +75,19 @@ def test_omega_by_the_ends_is_that_of_the_force(grain):
 
 
 def test_rows_of_the_queue_are_read_as_a_table(tmp_path, monkeypatch):
-    monkeypatch.setattr(pulled, "MATERIALS", ("q-S",))
-    monkeypatch.setattr(pulled, "TYPES", ("BA", "BAM1"))
-    monkeypatch.setattr(pulled, "SIZES_NM", (70,))
-    monkeypatch.setattr(pulled, "SEEDS", range(1))
-    monkeypatch.setattr(pulled, "ENDS", {name: pulled.ENDS[name] for name in ("usual", "slow")})
-    made = pulled.in_the_box, pulled.by_its_ends
-    monkeypatch.setattr(pulled, "in_the_box", lambda grain: made[0](grain, ONE_OF_EACH))
-    monkeypatch.setattr(pulled, "by_its_ends", lambda grain: made[1](grain, pulled.ENDS))
-    wanted = pulled.tasks(load(*pulled.CONFIG), tmp_path)
+    monkeypatch.setattr(pulling, "MATERIALS", ("q-S",))
+    monkeypatch.setattr(pulling, "TYPES", ("BA", "BAM1"))
+    monkeypatch.setattr(pulling, "SIZES_NM", (70,))
+    monkeypatch.setattr(pulling, "SEEDS", range(1))
+    monkeypatch.setattr(pulling, "ENDS", {name: pulling.ENDS[name] for name in ("usual", "slow")})
+    made = pulling.in_the_box, pulling.by_its_ends
+    monkeypatch.setattr(pulling, "in_the_box", lambda grain: made[0](grain, ONE_OF_EACH))
+    monkeypatch.setattr(pulling, "by_its_ends", lambda grain: made[1](grain, pulling.ENDS))
+    wanted = pulling.tasks(load(*pulling.CONFIG), tmp_path)
     said = []
     assert work(wanted, say=said.append) == 0 and len(said) == 2
-    assert work(pulled.tasks(load(*pulled.CONFIG), tmp_path), say=said.append) == 0 and len(said) == 2
-    table = told.read(tmp_path)
+    assert work(pulling.tasks(load(*pulling.CONFIG), tmp_path), say=said.append) == 0 and len(said) == 2
+    table = told.read_pulled(tmp_path)
     assert len(table) == 2 * (1 + 3 + 1) and set(table["way"]) == set(told.WAYS)
     gamma = get_material("q-S").surface_energy
     np.testing.assert_allclose(
@@ -96,14 +97,14 @@ def test_rows_of_the_queue_are_read_as_a_table(tmp_path, monkeypatch):
 
 
 def test_every_task_of_the_queue_is_another_row(tmp_path):
-    wanted = pulled.tasks(load(*pulled.CONFIG), tmp_path)
+    wanted = pulling.tasks(load(*pulling.CONFIG), tmp_path)
     assert len({(task.table.path, task.key) for task in wanted}) == len(wanted)
-    assert len(wanted) == len(pulled.MATERIALS) * len(pulled.TYPES) * len(pulled.SIZES_NM) * len(pulled.SEEDS)
+    assert len(wanted) == len(pulling.MATERIALS) * len(pulling.TYPES) * len(pulling.SIZES_NM) * len(pulling.SEEDS)
 
 
 def test_an_empty_folder_is_one_sentence(tmp_path):
     with pytest.raises(ratd.InputError, match="holds no pulled grains"):
-        told.read(tmp_path)
+        told.read_pulled(tmp_path)
 
 
 def made_up(box_over_spin=2.0, ends_over_spin=3.0, seeds=3):
@@ -135,7 +136,7 @@ def made_up(box_over_spin=2.0, ends_over_spin=3.0, seeds=3):
 
 
 def test_findings_are_geometric_means_of_the_same_grains():
-    found = told.findings(*made_up())
+    found = of_pulled(*made_up())
     assert found["pulled.grains"] == 12 and found["pulled.beside"] == 12
     for kind in ("BA", "BAM1", "all"):
         assert found[f"pulled.{kind} over spin"].value == pytest.approx(2.0)
@@ -150,7 +151,7 @@ def test_findings_are_geometric_means_of_the_same_grains():
 
 def test_a_grain_that_was_not_spun_up_has_no_tension():
     table, spun = made_up()
-    found = told.findings(table, spun[spun["seed"] > 0])
+    found = of_pulled(table, spun[spun["seed"] > 0])
     assert found["pulled.grains"] == 12 and found["pulled.beside"] == 8
     assert found["pulled.BA over spin"].value == pytest.approx(2.0)
 

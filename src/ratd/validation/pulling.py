@@ -1,8 +1,8 @@
 """A queue of grains of the spin-up that are pulled until they come apart, which may be stopped at any time.
 
-    python -m ratd.validation.pulled                # go on where it was, until all is done
-    python -m ratd.validation.pulled --minutes 30
-    python -m ratd.validation.pulled --list         # what there is and what is left
+    python -m ratd.validation.pulling                # go on where it was, until all is done
+    python -m ratd.validation.pulling --minutes 30
+    python -m ratd.validation.pulling --list         # what there is and what is left
 
 The grains are those of the ensemble, grown anew. Each becomes a row of a small table in docs/reproduction/data/pulled,
 a file a material and type, and holds all its pulls (`BOX`, `ENDS`). A row that is there is never computed again, also
@@ -82,7 +82,7 @@ def tasks(plan, data):
     -------
     list of ratd.pipeline.queue.Task
     """
-    source = source_hash(modules=["ratd.validation.pulled"])
+    source = source_hash(modules=["ratd.validation.pulling"])
     tables = {(material, kind): _table(plan, data, material, kind) for material in MATERIALS for kind in TYPES}
     return [
         Task(
@@ -97,8 +97,7 @@ def tasks(plan, data):
 
 def _table(plan, data, material, kind):
     """The table of a material and type."""
-    growth = {name: value for name, value in plan.grow(material, kind, 0.0).items() if name != "a_eff"}
-    settings = {"growth": growth, "box": BOX, "ends": ENDS, "step": STEP | {"longest": LONGEST}}
+    settings = {"growth": plan.growth(material, kind), "box": BOX, "ends": ENDS, "step": STEP | {"longest": LONGEST}}
     return Table(Path(data, f"{material}_{kind}.nc"), KIND, ("a_eff", "seed"), plan.materials[material], settings)
 
 

@@ -9,7 +9,7 @@ import pytest
 from ratd.base.errors import FileError, InputError
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
-from ratd.validation import damping, energy_step, growth, page, page_lammps, page_values, pull_off, relaxation
+from ratd.validation import damping, document, energy_step, findings, growth, lammps_findings, pull_off, relaxation
 from ratd.validation.tables import CASE, as_dataset
 from tiny_pipeline import ROOT
 
@@ -23,29 +23,29 @@ GROWN = [
 
 @pytest.fixture(scope="module")
 def tables():
-    return page.read_data(ROOT)
+    return document.read_data(ROOT)
 
 
 @pytest.fixture(scope="module")
 def template():
-    return (ROOT / page.TEMPLATE).read_text(encoding="utf-8")
+    return (ROOT / document.TEMPLATE).read_text(encoding="utf-8")
 
 
 def test_the_page_its_figures_and_tables_are_those_of_the_data(tmp_path):
-    page.redraw(ROOT, tmp_path)
+    document.redraw(ROOT, tmp_path)
     written = [path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()]
     for path in written:
         assert (ROOT / path).is_file(), f"redraw the page: {path}"
         if path.suffix != ".png":
             assert (tmp_path / path).read_bytes() == (ROOT / path).read_bytes(), f"redraw the page: {path}"
     figures = {path for path in written if path.suffix == ".png"}
-    there = {path.relative_to(ROOT) for path in (ROOT / page.FIGURES).glob("*.png")}
-    text = (ROOT / page.DOCUMENT).read_text(encoding="utf-8")
+    there = {path.relative_to(ROOT) for path in (ROOT / document.FIGURES).glob("*.png")}
+    text = (ROOT / document.DOCUMENT).read_text(encoding="utf-8")
     assert figures == there and all(f"(validation/{path.name})" in text for path in figures)
 
 
 def test_the_page_is_short_and_its_first_lines_tell_what_is_open():
-    text = (ROOT / page.DOCUMENT).read_text(encoding="utf-8")
+    text = (ROOT / document.DOCUMENT).read_text(encoding="utf-8")
     lines = text.splitlines()
     assert len(lines) <= 200 and text.count("![") <= 6
     answer = " ".join(lines[:10])
@@ -56,7 +56,7 @@ def test_the_page_is_short_and_its_first_lines_tell_what_is_open():
 def test_another_verdict_is_an_error(tables, template):
     pairs = tables["pull_off"]
     late = pairs["omega"].where(pairs["start"] != "waiting", 1.02 * pairs["omega_force"])
-    changed = page.values(tables | {"pull_off": pairs.assign(omega=late)})
+    changed = document.values(tables | {"pull_off": pairs.assign(omega=late)})
     assert changed["pull_off.waiting verdict"] == "open"
     with pytest.raises(InputError, match="waiting verdict is 'open'"):
         fill(template, changed)
@@ -64,7 +64,7 @@ def test_another_verdict_is_an_error(tables, template):
 
 def test_the_slots_of_lammps_come_from_its_function_alone(tables, template):
     """So that its data can be exchanged."""
-    own = page_lammps.of_lammps(tables["lammps"])
+    own = lammps_findings.of_lammps(tables["lammps"])
     assert {name for name in slots(template) if name.startswith("lammps.")} <= set(own)
     assert all(name.startswith("lammps.") for name in own)
 
@@ -79,8 +79,8 @@ def rotated(code, held, path="driven", study="rotation"):
 
 def test_thresholds_lie_between_the_omega_that_were_tried():
     rows = rotated("ratd", {1.0: 1.0, 4.0: 0.9, 9.0: 0.5})
-    rows += rotated(page_lammps.TURNING, {1.0: 1.0, 4.0: 1.0, 9.0: 0.8})
-    first, quarter = page_lammps.thresholds(pd.DataFrame(rows)).to_dict("records")
+    rows += rotated(lammps_findings.TURNING, {1.0: 1.0, 4.0: 1.0, 9.0: 0.8})
+    first, quarter = lammps_findings.thresholds(pd.DataFrame(rows)).to_dict("records")
     assert first["ratd"] == pytest.approx(2.0) and first["lammps"] == pytest.approx(6.0)
     assert first["ratio"] == pytest.approx(3.0) and first["way"] == "driven"
     assert quarter["ratd"] == pytest.approx(6.0) and np.isnan(quarter["ratio"])
@@ -88,10 +88,10 @@ def test_thresholds_lie_between_the_omega_that_were_tried():
 
 def test_a_grain_that_is_off_leaves_the_check_open(tables):
     table = tables["lammps"]
-    shifted = (table["study"] == page_lammps.ELASTIC_ROLLING) & (table["code"] == "ratd") & (table["type"] == "BA")
+    shifted = (table["study"] == lammps_findings.ELASTIC_ROLLING) & (table["code"] == "ratd") & (table["type"] == "BA")
     omega = table["omega"].where(~shifted, 1.3 * table["omega"])
-    found = page_lammps.of_lammps(table.assign(omega=omega))
-    own = page_lammps.of_lammps(table)
+    found = lammps_findings.of_lammps(table.assign(omega=omega))
+    own = lammps_findings.of_lammps(table)
     assert own["lammps.elastic first verdict"] == "met" and found["lammps.elastic first verdict"] == "open"
     assert found["lammps.elastic first least"] == pytest.approx(own["lammps.elastic first least"] / 1.3, rel=0.1)
 
@@ -102,7 +102,7 @@ def piece(folder, name, energies):
         grain | {"timestep_factor": 0.1, "time": 1.0, "error": error, "dissipated": 0.0, "contacts_made": 0}
         for error in energies
     ]
-    made = dict.fromkeys(page.MADE, name)
+    made = dict.fromkeys(document.MADE, name)
     path = folder / f"{name}.nc"
     io.write(path, as_dataset(rows, energy_step.KIND).assign_attrs(made), energy_step.KIND)
     return path
@@ -113,9 +113,9 @@ def test_pieces_are_added_and_replaced(tmp_path):
     for folder in ("old", "new"):
         (tmp_path / folder).mkdir()
     old = [piece(tmp_path / "old", "a", [1.0, 2.0]), piece(tmp_path / "old", "b", [3.0])]
-    io.write(target, page.merged(target, old, energy_step.KIND), energy_step.KIND)
+    io.write(target, document.merged(target, old, energy_step.KIND), energy_step.KIND)
     new = [piece(tmp_path / "new", "a", [5.0]), piece(tmp_path / "new", "c", [6.0, 7.0])]
-    table = page.merged(target, new, energy_step.KIND)
+    table = document.merged(target, new, energy_step.KIND)
     assert table["error"].values.tolist() == [5.0, 3.0, 6.0, 7.0] and table.sizes[CASE] == 4
     pieces = json.loads(table.attrs["pieces"])
     assert [(name, cases) for name, cases, _ in pieces] == [("a", 1), ("b", 1), ("c", 2)]
@@ -124,7 +124,7 @@ def test_pieces_are_added_and_replaced(tmp_path):
 
 def test_collect_says_what_is_missing(tmp_path):
     with pytest.raises(FileError, match="holds no piece of a check"):
-        page.collect(tmp_path, tmp_path)
+        document.collect(tmp_path, tmp_path)
 
 
 def again(rows, table, keys, columns, within=1e-9):
@@ -170,7 +170,7 @@ def test_pairs_that_wait_are_a_piece_of_their_own(tables):
     rows = pull_off.compute({"material": "q-S", "pairs": 1, "ratios": [2], "seed": 0})
     assert [row["start"] for row in rows] == ["waiting"] * 3
     assert all(abs(row["omega"] / row["omega_force"] - 1.0) < 0.01 for row in rows)
-    table = page_values.off_the_answer(pd.DataFrame(rows).assign(study="pairs"))
+    table = findings.off_the_answer(pd.DataFrame(rows).assign(study="pairs"))
     assert table["off"].tolist() == pytest.approx([row["omega"] / row["omega_force"] - 1.0 for row in rows])
 
 
@@ -182,11 +182,11 @@ def test_exponents_are_those_of_the_power_law():
     ]  # fmt: skip
     rows.append(grain | {"seed": 0, "timestep_factor": 0.4, "error": 5.0})
     rows.append(grain | {"seed": 1, "timestep_factor": 0.4, "error": 5.0})
-    np.testing.assert_allclose(page_values.exponents(pd.DataFrame(rows), "error", 0.1), 2.0, rtol=1e-9)
+    np.testing.assert_allclose(findings.exponents(pd.DataFrame(rows), "error", 0.1), 2.0, rtol=1e-9)
 
 
 def test_a_grain_beyond_its_bound_is_noticed(tables):
     table = tables["theory"]
-    assert page_values.of_theory(table)["theory.verdict"] == "met"
+    assert findings.of_theory(table)["theory.verdict"] == "met"
     higher = table.assign(omega_first_loss=table["omega_first_loss"] * np.where(table["type"] == "BA", 1.02, 1.0))
-    assert page_values.of_theory(higher)["theory.verdict"] == "open"
+    assert findings.of_theory(higher)["theory.verdict"] == "open"

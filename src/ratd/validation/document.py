@@ -1,7 +1,7 @@
 """docs/validation.md, its figures and its tables of numbers, drawn from the tables of the checks beside them.
 
-python -m ratd.validation.page collect RESULTS    take the pieces that are there, such as of results/validation/full
-python -m ratd.validation.page redraw             figures, tables and text, in seconds
+python -m ratd.validation.document collect RESULTS    take the pieces that are there, such as of results/validation/full
+python -m ratd.validation.document redraw             figures, tables and text, in seconds
 """
 
 import json
@@ -17,7 +17,7 @@ from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
-from ratd.validation import page_figures, page_lammps, page_values, quasi_static_page
+from ratd.validation import figures, findings, lammps_findings, quasi_static_document
 from ratd.validation.tables import CASE, as_dataset
 
 __all__ = ["collect", "main", "read_data", "redraw", "values"]
@@ -131,11 +131,11 @@ def read_data(folder="."):
     """The tables behind the page, name of a check -> pandas.DataFrame."""
     data = Path(folder, DATA)
     tables = {check: io.read(data / f"{check}.nc", f"validation_{check}").to_dataframe() for check in CHECKS}
-    scheme = Path(folder, quasi_static_page.DATA)
+    scheme = Path(folder, quasi_static_document.DATA)
     return (
         tables
         | {name: pd.read_csv(data / f"{name}.csv") for name in ("reference", "balance")}
-        | {name: pd.read_csv(scheme / f"{name}.csv") for name in quasi_static_page.CHECKS}
+        | {name: pd.read_csv(scheme / f"{name}.csv") for name in quasi_static_document.CHECKS}
     )
 
 
@@ -143,40 +143,39 @@ def values(tables):
     """Values of the slots, from what `read_data` gives: name of a slot -> number or text."""
     found = {}
     for check in (*CHECKS, "reference", "balance"):
-        of = page_lammps.of_lammps if check == "lammps" else getattr(page_values, f"of_{check}")
+        of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
         found |= of(tables[check])
-    scheme = quasi_static_page.findings(tables["quasi_static"], tables["remnant"])
+    scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
     found |= {f"scheme.{name}": value for name, value in scheme.items()}
     worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
-    found["scheme.verdict"] = "met" if worst < page_values.SHIFTED else "open"
+    found["scheme.verdict"] = "met" if worst < findings.SHIFTED else "open"
     found["scheme.all verdict"] = "met" if scheme["classes"] == scheme["all classes"] else "open"
-    found["scheme.BA large"] = page_values.large_fluffy(tables["quasi_static"])
     found["scheme.DMT over JKR"] = np.sqrt(4.0 / 3.0)
-    found |= {"limit.near": page_lammps.NEAR, "limit.force": page_lammps.FORCE}
-    return found | page_values.limits()
+    found |= {"limit.near": lammps_findings.NEAR, "limit.force": lammps_findings.FORCE}
+    return found | findings.limits()
 
 
 def numbers(tables):
     """The tables of the page that are too long for it, name -> pandas.DataFrame."""
-    pairs = page_values.off_the_answer(tables["pull_off"])
+    pairs = findings.off_the_answer(tables["pull_off"])
     pairs["radii"] = np.where(pairs["radius_1"] == pairs["radius_2"], "equal", "unequal")
     pairs = pairs.groupby(["material", "start", "radii"])["off"].agg(["size", "median", "min", "max"]).reset_index()
     damping = tables["damping"]
     times = pd.concat(
-        page_values.ratios(part, mark, (9, 5), ["damping", "epsilon", "timestep_factor"]).assign(study=study, mark=mark)
+        findings.ratios(part, mark, (9, 5), ["damping", "epsilon", "timestep_factor"]).assign(study=study, mark=mark)
         for study, part in damping.groupby("study")
         for mark in ("omega_first_loss", "omega_mass_75", "omega_disr")
     )
     keys = ["study", "mark", "type", "damping", "epsilon", "timestep_factor"]
     return {
         "pull_off": pairs,
-        "lammps": page_lammps.thresholds(tables["lammps"]),
-        "growth": pd.DataFrame(page_values.grown(tables["growth"])),
-        "migration": pd.DataFrame(page_values.migrations(tables["growth"])),
-        "energy": page_values.balances(tables["energy"]),
+        "lammps": lammps_findings.thresholds(tables["lammps"]),
+        "growth": pd.DataFrame(findings.grown(tables["growth"])),
+        "migration": pd.DataFrame(findings.migrations(tables["growth"])),
+        "energy": findings.balances(tables["energy"]),
         "theory": tables["theory"],
         "damping": times.groupby(keys, dropna=False)["ratio"].agg(["size", "median", "min", "max"]).reset_index(),
-        "literal": page_values.runs_of_solid_grains(tables["literal"]),
+        "literal": findings.runs_of_solid_grains(tables["literal"]),
     }
 
 
@@ -185,15 +184,15 @@ def redraw(folder=".", into=None):
     folder = Path(folder)
     into = folder if into is None else Path(into)
     tables = read_data(folder)
-    figures = {
-        "pull_off": page_figures.apart(tables["pull_off"]),
-        "lammps": page_lammps.beside(tables["lammps"]),
-        "steps": page_figures.steps(tables["energy_step"], tables["frames"]),
-        "theory": page_figures.bounds(tables["theory"]),
-        "damping": page_figures.viscous_time(tables["damping"]),
-        "literal": page_figures.late_coriolis(tables["literal"]),
+    drawn = {
+        "pull_off": figures.apart(tables["pull_off"]),
+        "lammps": lammps_findings.beside(tables["lammps"]),
+        "steps": figures.steps(tables["energy_step"], tables["frames"]),
+        "theory": figures.bounds(tables["theory"]),
+        "damping": figures.viscous_time(tables["damping"]),
+        "literal": figures.late_coriolis(tables["literal"]),
     }
-    for name, figure in figures.items():
+    for name, figure in drawn.items():
         save(figure, into / FIGURES / f"{name}.png")
     for name, table in numbers(tables).items():
         write_text(into / DATA / "tables" / f"{name}.csv", table.to_csv(index=False, float_format="%.5g"))

@@ -11,16 +11,16 @@ import pandas as pd
 
 from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.materials import get_material
-from ratd.base.statistics import mean_of, median_of
+from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
-from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
+from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.size_law import size_law, slopes
-from ratd.pipeline.documents import Measured
+from ratd.experiments.spin_up.size_law import slopes
+from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
-    "CLASSES", "MARK", "MARKS", "beside_print", "geometric_mean", "marks_compared", "of_drive", "of_law", "of_table_3",
+    "CLASSES", "MARK", "MARKS", "beside_print", "marks_compared", "of_drive", "of_table_3",
     "strength_omega", "what_contacts_hold",
 ]  # fmt: skip
 
@@ -41,18 +41,6 @@ def beside_print(table):
 def of_class(table, name):
     """The rows of a class of size."""
     return table[table["nm"].between(*CLASSES[name])]
-
-
-def geometric_mean(values, cell):
-    """Geometric mean of positive values, all cells counting alike, and its error, Measured."""
-    mean, error = mean_of(np.log(np.asarray(values, dtype=float)), cell)
-    return Measured(math.exp(mean), math.exp(mean) * error)
-
-
-def median(values, cell=None):
-    """Median with its error, Measured."""
-    found = median_of(values, cell=cell)
-    return Measured(found["median"], found["error"])
 
 
 def middle(values):
@@ -102,21 +90,6 @@ def of_drive(letter, table):
     return values
 
 
-def of_law(table):
-    """What to use: C and p of a power of size for each mark, and the medians of all cells."""
-    values = {}
-    for mark, word in MARKS.items():
-        for row in size_law(table, mark).to_dict("records"):
-            start = f"law.{row['type']} {word}"
-            values |= {
-                f"{start} C": Measured(row["C"], row["C_error"]),
-                f"{start} p": Measured(row["p"], row["p_error"]),
-                f"{start} scatter": math.exp(row["scatter"]),
-                f"{start} n": row["n_grains"],
-            }
-    return values
-
-
 def cell_medians(table, mark=MARK):
     """Medians of the cells [1e6 rad/s], a row a material and type, a column a size [nm]: a table of Markdown."""
     grouped = table.groupby(["material", "type", "nm"])[mark].median() / 1e6
@@ -151,9 +124,9 @@ def marks_compared(table):
     return values
 
 
-def of_table_3(letter, table):
-    """A and alpha of Eq. 33 fitted to the grains, mark omega_disr as in the paper, beside Table 3."""
-    fit = fit_ensemble(table, PAPER_MEAN_RADIUS).isel(mean_radius=0)
+def of_table_3(letter, fit):
+    """A and alpha of Eq. 33, fitted to the grains of a drive (`eq33.fit_ensemble`), beside Table 3."""
+    fit = fit.isel(mean_radius=0)
     values, held = {}, 0
     for (material, kind), (A, alpha) in TABLE_3.items():
         own = fit.sel(material=material, type=kind)

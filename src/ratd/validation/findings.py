@@ -7,23 +7,19 @@ a ``verdict``, met or open.
 import numpy as np
 from scipy.stats import kstest
 
+from ratd.base.measured import median
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
-from ratd.pipeline.documents import Measured
 from ratd.validation.damping import RATE, RESOLUTION, WAITING
 from ratd.validation.growth import EXPECTED_POROSITY, NOT
-from ratd.validation.quasi_static import shifts
-from ratd.validation.quasi_static_page import STEADY
 
 __all__ = [
     "arrival_values",
     "exponents",
     "grown",
-    "large_fluffy",
     "limits",
-    "measured",
     "migrations",
     "of_balance",
     "of_damping",
@@ -43,8 +39,6 @@ __all__ = [
 ]
 
 TYPES = ("BA", "BAM1", "BAM2")
-LARGE = 250e-9
-"""Effective radius [m] above which BA grains are the hard case of docs/quasi_static.md."""
 GRAIN = ["material", "type", "a_eff", "seed"]
 PARTED = 0.01
 """Part by which a pair may part off the exact answer."""
@@ -65,11 +59,6 @@ CHANCE = 0.01
 """Least probability of a Kolmogorov-Smirnov test."""
 SOLID = 0.10
 """Part by which nine of ten runs of the drive literal may be off the answer for a solid grain."""
-
-
-def measured(found):
-    """A median of `ratd.base.statistics.median_of` with its standard error."""
-    return Measured(float(found["median"]), float(found["error"]))
 
 
 def limits():
@@ -175,7 +164,7 @@ def of_frames(table):
         "frames.grains": len(table.groupby(GRAIN)),
         "frames.distance": table["distance"].max(),
         "frames.moved": longest.groupby(GRAIN)["moved"].max().min(),
-        "frames.exponent": measured(median_of(exponents(table, "distance"))),
+        "frames.exponent": median(exponents(table, "distance")),
         "frames.verdict": _verdict(table["distance"].max() < APART),
     }
 
@@ -188,7 +177,7 @@ def of_energy_step(table):
     return {
         "energy_step.grains": len(table.groupby(GRAIN)),
         "energy_step.worst": worst,
-        "energy_step.exponent": measured(median_of(exponents(table, "error", TIMESTEP_FACTOR))),
+        "energy_step.exponent": median(exponents(table, "error", TIMESTEP_FACTOR)),
         "energy_step.verdict": _verdict(worst < KEPT),
     }  # fmt: skip
 
@@ -335,31 +324,12 @@ def of_theory(table):
         "theory.verdict": _verdict((over <= 1.0 + SHIFTED).all()),
     }
     for kind, part in table.groupby("type"):
-        values[f"theory.{kind} at loss"] = measured(median_of(over[part.index]))
-        values[f"theory.{kind} strength"] = measured(median_of(part["omega_mass_75"] / part["midplane"]))
+        values[f"theory.{kind} at loss"] = median(over[part.index])
+        values[f"theory.{kind} strength"] = median(part["omega_mass_75"] / part["midplane"])
     trees = table["type"] == "BA"
     values["theory.trees"] = int(trees.sum())
     values["theory.trees on it"] = int((np.abs(over[trees] - 1.0) < SHIFTED).sum())
     return values
-
-
-def large_fluffy(table):
-    """How far single BA grains of 300 nm and above are off when one number of the scheme is changed.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of `ratd.validation.quasi_static`.
-
-    Returns
-    -------
-    float
-        Where 68 % of the grains end, over 1, of the number that does most: of the loss of a quarter.
-    """
-    large = table[(table["type"] == "BA") & (table["a_eff"] > LARGE)]
-    found = shifts(large, marks=("omega_mass_75",))
-    found = found[[pair in STEADY for pair in zip(found["vary"], found["value"], strict=True)]]
-    return float(np.maximum(1.0 - found["low"], found["high"] - 1.0).max())
 
 
 def ratios(table, mark, times, by):
@@ -397,14 +367,13 @@ def of_damping(table):
     dense = table[table["type"] == "BAM2"]
     rate = ratios(dense[dense["study"] == RATE], "omega_disr", (9, 5), ["epsilon"])
     for epsilon in (rate["epsilon"].min(), rate["epsilon"].max()):
-        found = median_of(rate.loc[rate["epsilon"] == epsilon, "ratio"])
-        values[f"damping.BAM2 disr {epsilon:g}"] = measured(found)
+        values[f"damping.BAM2 disr {epsilon:g}"] = median(rate.loc[rate["epsilon"] == epsilon, "ratio"])
     resolved = dense[(dense["study"] == RESOLUTION) & np.isclose(dense["viscous_time"], 5e-12, atol=0.0)]
     explicit = resolved[resolved["damping"] == "explicit"]
     finest = explicit[explicit["timestep_factor"] == explicit["timestep_factor"].min()]
     own = resolved[(resolved["damping"] == "implicit") & (resolved["timestep_factor"] == TIMESTEP_FACTOR)]
     both = own.merge(finest, on=GRAIN, suffixes=("", "_finest"))
-    values["damping.BAM2 implicit"] = measured(median_of(both["omega_mass_75"] / both["omega_mass_75_finest"]))
+    values["damping.BAM2 implicit"] = median(both["omega_mass_75"] / both["omega_mass_75_finest"])
     return values
 
 
@@ -440,19 +409,17 @@ def of_literal(table):
     own = table.loc[table["drive"] == "prescribed", [*GRAIN, "omega_first_loss"]]
     exact = exact.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
     exact = exact[np.isfinite(exact["omega_first_loss"])]
+    grain, higher = runs.groupby(GRAIN).ngroup(), runs["omega_first_loss"] / runs["known"]
     values = {
         "literal.runs": len(runs),
         "literal.grains": len(runs.groupby(GRAIN)),
-        "literal.solid": measured(median_of(over, runs.groupby(GRAIN).ngroup())),
+        "literal.solid": median(over, group=grain),
         "literal.nine of ten": most,
         "literal.all": (over - 1.0).abs().max(),
         "literal.verdict": _verdict(most < SOLID),
-        "literal.higher": measured(
-            median_of(runs["omega_first_loss"] / runs["known"], runs.groupby(GRAIN).ngroup())
-        ),
-        "literal.highest": (runs["omega_first_loss"] / runs["known"]).max(),
-    }  # fmt: skip
+        "literal.higher": median(higher, group=grain),
+        "literal.highest": higher.max(),
+    }
     for kind, part in exact.groupby("type"):
-        turns = median_of(part["turned"] / part["known"], part.groupby(GRAIN).ngroup())
-        values[f"literal.{kind} turns"] = measured(turns)
+        values[f"literal.{kind} turns"] = median(part["turned"] / part["known"], group=part.groupby(GRAIN).ngroup())
     return values

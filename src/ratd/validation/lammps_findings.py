@@ -3,9 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from ratd.base.statistics import median_of
+from ratd.base.measured import median
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, styled
-from ratd.pipeline.documents import Measured
 from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, MARKS, TURNING, threshold
 
 __all__ = ["beside", "of_lammps", "thresholds"]
@@ -91,10 +90,9 @@ def of_lammps(table):
     for (way, mark), part in found.groupby(["way", "mark"]):
         name = f"lammps.{way} {'first' if mark == 'first loss' else 'quarter'}"
         ratio = part["ratio"].dropna()
-        median = median_of(ratio)
         within = int((np.abs(ratio - 1.0) <= NEAR).sum())
         values |= {
-            name: Measured(float(median["median"]), float(median["error"])),
+            name: median(ratio),
             f"{name} least": ratio.min(),
             f"{name} most": ratio.max(),
             f"{name} known": len(ratio),

@@ -16,7 +16,7 @@ from ratd.pictures.style import (
     styled,
 )
 from ratd.validation.damping import RATE, WAITING
-from ratd.validation.page_values import TYPES, off_the_answer, ratios, runs_of_solid_grains
+from ratd.validation.findings import TYPES, off_the_answer, ratios, runs_of_solid_grains
 
 __all__ = ["apart", "bounds", "late_coriolis", "steps", "viscous_time"]
 

@@ -1,0 +1,1 @@
+"""Numbers that docs/reproduction.md and its appendix tell, a module each sort: values of slots from tables."""

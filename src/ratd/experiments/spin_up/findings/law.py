@@ -1,0 +1,76 @@
+"""What to use where no grain is at hand: omega over size, how well that predicts, and an example."""
+
+import math
+
+import numpy as np
+
+from ratd.base.materials import get_material
+from ratd.base.measured import Measured
+from ratd.base.units import NM
+from ratd.experiments.spin_up.cross_validation import cross_validation
+from ratd.experiments.spin_up.eq33 import eq33
+from ratd.experiments.spin_up.findings.ensemble import MARK, MARKS
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
+from ratd.experiments.spin_up.size_law import curved_law, curved_law_value, size_law, unit_of
+
+__all__ = ["of_curve", "of_law", "of_prediction"]
+
+EXAMPLE = ("q-S", "BAM1", 400 * NM)
+"""The grain of which the document works out omega."""
+CURVED = 2.0
+"""So many standard errors of q from 0 reject a straight power of size."""
+
+
+def of_law(table):
+    """What to use: C and p of a power of size for each mark, and the medians of all cells."""
+    values = {}
+    for mark, word in MARKS.items():
+        for row in size_law(table, mark).to_dict("records"):
+            start = f"law.{row['type']} {word}"
+            values |= {
+                f"{start} C": Measured(row["C"], row["C_error"]),
+                f"{start} p": Measured(row["p"], row["p_error"]),
+                f"{start} scatter": math.exp(row["scatter"]),
+                f"{start} n": row["n_grains"],
+            }
+    return values
+
+
+def of_curve(table, grown):
+    """The curved law, and the example.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Driven grains.
+    grown : pandas.DataFrame
+        All grains as grown, for the printed omega of the example.
+    """
+    law = curved_law(table, MARK).set_index("type")
+    values, bent = {}, []
+    for kind, row in law.iterrows():
+        values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
+        values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
+        bent += [kind] if abs(row["q"]) > CURVED * row["q_error"] else []
+    values["curve.rejected"] = " and ".join(bent) or "no type"
+    material, kind, size = EXAMPLE
+    row, own = law.loc[kind], get_material(material)
+    values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
+    cell = grown[
+        (grown["material"] == material) & (grown["type"] == kind) & np.isclose(grown["a_eff"], size, atol=1e-12)
+    ]
+    values["example.printed"] = eq33(
+        size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
+        cell["filling_factor"].mean(), *TABLE_3[material, kind],
+    )  # fmt: skip
+    return values
+
+
+def of_prediction(table):
+    """How well laws predict grains of sizes that they were not fitted to."""
+    table = table[table[MARK] > 0]
+    found = cross_validation(table, MARK, by="size")
+    return {
+        f"predict.{row['predictor']} {row['type']}": Measured(row["scatter"], row["error"])
+        for row in found.to_dict("records")
+    }

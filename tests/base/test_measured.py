@@ -1,0 +1,13 @@
+"""Numbers with their standard errors."""
+
+import numpy as np
+import pytest
+
+from ratd.base.measured import geometric_mean
+
+
+def test_the_error_of_a_geometric_mean_is_that_of_its_cells():
+    cell = np.repeat([0, 1], 3)
+    found = geometric_mean(np.exp([0.9, 1.0, 1.1, 3.9, 4.0, 4.1]), cell)
+    assert found.value == pytest.approx(np.exp(2.5))
+    assert found.error / found.value == pytest.approx(0.1 / np.sqrt(3) / np.sqrt(2))
