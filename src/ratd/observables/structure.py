@@ -1,8 +1,7 @@
 """How monomers are spread in space."""
 
 import numpy as np
-
-from ratd.base.jit import jit
+from scipy.spatial import cKDTree
 
 __all__ = ["cumulative_number", "radius_of_gyration"]
 
@@ -13,7 +12,6 @@ def radius_of_gyration(position, mass):
     return float(np.sqrt(mass @ ((position - centre) ** 2).sum(axis=1) / mass.sum()))
 
 
-@jit
 def cumulative_number(position, edges, distance):
     """N(<r): mean number of centres within r of a centre, itself included, with all images of a periodic box.
 
@@ -32,30 +30,17 @@ def cumulative_number(position, edges, distance):
 
     Notes
     -----
-    Sect. 3.6 of Kataoka et al. (2013). Cost n^2 times the images within reach.
+    Sect. 3.6 of Kataoka et al. (2013). Trees of the centres and of all images within reach are counted against each
+    other.
     """
-    n = position.shape[0]
-    count = np.zeros(distance.shape[0] + 1)
+    edges = np.asarray(edges, dtype=float)
     reach = distance[-1]
-    images = np.zeros(3, dtype=np.int64)
+    images = position
     if edges[0] > 0.0:
-        for axis in range(3):
-            images[axis] = np.int64(np.ceil(reach / edges[axis])) + 1
-    for i in range(n):
-        for j in range(i, n):
-            d = np.empty(3)
-            for axis in range(3):
-                d[axis] = position[i, axis] - position[j, axis]
-                if edges[0] > 0.0:
-                    d[axis] -= edges[axis] * np.round(d[axis] / edges[axis])
-            weight = 1.0 if i == j else 2.0
-            for nx in range(-images[0], images[0] + 1):
-                dx = d[0] + nx * edges[0]
-                for ny in range(-images[1], images[1] + 1):
-                    dy = d[1] + ny * edges[1]
-                    for nz in range(-images[2], images[2] + 1):
-                        dz = d[2] + nz * edges[2]
-                        r = np.sqrt(dx * dx + dy * dy + dz * dz)
-                        if r <= reach:
-                            count[np.searchsorted(distance, r)] += weight
-    return np.cumsum(count)[:-1] / n
+        position = position - edges * np.round(position / edges)
+        numbers = [np.arange(-n, n + 1) * edge for n, edge in zip(np.ceil(reach / edges + 0.5), edges, strict=True)]
+        shifts = np.stack(np.meshgrid(*numbers, indexing="ij"), axis=-1).reshape(-1, 3)
+        # one shift after the other, so that what is out of reach takes no room
+        near = (position + shift for shift in shifts)
+        images = np.concatenate([each[(np.abs(each) <= 0.5 * edges + reach).all(axis=1)] for each in near])
+    return cKDTree(position).count_neighbors(cKDTree(images), distance) / len(position)

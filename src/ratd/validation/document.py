@@ -99,7 +99,7 @@ def merged(target, paths, kind):
 
 
 def balance(folder):
-    """What the balance of energy lacks at most in production runs with the explicit step.
+    """What the balance of energy lacks at most in production runs.
 
     Parameters
     ----------
@@ -114,10 +114,10 @@ def balance(folder):
     rows = []
     for path in sorted(Path(folder).glob(COMPRESSION)):
         table = io.read(path, "compression_set")
-        if not table.attrs["integrator"].startswith("Leapfrog"):
-            continue
+        explicit = table.attrs["integrator"].startswith("Leapfrog")
         part = np.abs(table["energy_residual"].values / table["work"].values)[:, table["phi"].values > FROM_PHI]
-        rows.append({"experiment": "compression", "set": path.stem, "runs": len(part), "worst": np.nanmax(part)})
+        name = "compression" if explicit else "long steps"
+        rows.append({"experiment": name, "set": path.stem, "runs": len(part), "worst": np.nanmax(part)})
     collisions = collision_table(
         path for path in sorted(Path(folder).glob(COLLISION)) if path.parent.name != "pictures"
     )
