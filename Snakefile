@@ -18,6 +18,17 @@ configfile: "config/compression.yaml"
 configfile: "config/collision.yaml"
 
 
+# What is wrong in any experiment is told at once.
+PLAN, COMPRESSION, COLLISIONS = checked(
+    together,
+    *(
+        partial(plan, config)
+        for plan in (spin_up_plan, compression_plan, collision_plan)
+    ),
+)
+say(PLAN.notes)
+
+
 pathvars:
     results=results_folder(config),
 

@@ -56,3 +56,28 @@ def drawn(picture, rows=slice(None), columns=slice(None)):
     """Number of coloured pixels in a part of a picture: text and controls are grey, spheres are not."""
     part = picture[rows, columns]
     return int(np.sum(np.ptp(part, axis=2) > 60))
+
+
+def wait(page):
+    """Until the scene has been drawn: k3d places the camera some time after it has loaded."""
+    page.wait_for_function("document.getElementById('of').textContent !== ''", timeout=60_000)
+    page.wait_for_timeout(1500)
+
+
+def fits_a_phone(path):
+    """Ends with an error unless a page with an aggregate has all its panels, and the aggregate, on a narrow screen."""
+    width, height = 390, 760
+    with opened(path, width, height) as page:
+        wait(page)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        boxes = {
+            name: page.locator(f"#{name}").bounding_box() for name in ("numbers", "colours", "steps", "picture", "of")
+        }
+        for box in boxes.values():
+            assert box["x"] >= 0 and box["x"] + box["width"] <= width and box["y"] + box["height"] <= height
+        assert boxes["colours"]["y"] + boxes["colours"]["height"] <= boxes["steps"]["y"] + 1
+        scene = slice(int(boxes["numbers"]["height"]), int(boxes["colours"]["y"]))
+        seen = picture(page)
+        # the aggregate, and nothing of it beyond the edges
+        assert drawn(seen, scene) > 1000
+        assert drawn(seen, scene, slice(0, 3)) == drawn(seen, scene, slice(-3, None)) == 0

@@ -1,5 +1,6 @@
 """The Python of README.md and docs/using.md, as a reader would type it."""
 
+import re
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -7,7 +8,9 @@ import pandas as pd
 import pytest
 
 import ratd
+from tiny_pipeline import Pipeline
 
+README = Path(__file__).parents[1] / "README.md"
 USING = Path(__file__).parents[1] / "docs" / "using.md"
 
 
@@ -58,3 +61,20 @@ def test_two_clusters_that_collide():
     exec(text, names)
     assert names["pieces"]["piece_members"].values.sum() == 8 and names["run"].sizes["snapshot"] == 31
     assert ratd.fragmentation_velocity(names["table"])["velocity"] == pytest.approx(1.5)
+
+
+def test_the_readme_is_one_screen_and_what_it_names_is_there():
+    text = README.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 80
+    for path in re.findall(r'\]\(([^)]+)\)|src="([^"]+)"', text):
+        assert (README.parent / "".join(path)).exists(), path
+    for name in re.findall(r"ratd\.(\w+)\(", text):
+        assert hasattr(ratd, name)
+
+
+def test_the_first_command_plans_all_three_experiments(tmp_path):
+    (command,) = re.findall(r"^ {4}.*snakemake --cores 2 (.*)$", README.read_text(encoding="utf-8"), re.MULTILINE)
+    *targets, _, config = command.split()
+    pipeline = Pipeline(tmp_path)
+    (tmp_path / "tiny.yaml").write_text((README.parent / config).read_text(encoding="utf-8"))
+    assert {"spin_up", "compress", "collide", "grain_page", "compression_page"} <= set(pipeline.planned(*targets))

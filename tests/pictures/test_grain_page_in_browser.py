@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from browser import drawn, opened, picture
+from browser import drawn, fits_a_phone, opened, picture, wait
 from ratd.pictures.grain_page import grain_page
 from synthetic_runs import run_with_snapshots
 
@@ -18,12 +18,6 @@ def path(tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "page.html"
     path.write_text(grain_page(run_with_snapshots(), OMEGA_DISR), encoding="utf-8")
     return path
-
-
-def wait(page):
-    """Until the scene has been drawn: k3d places the camera some time after it has loaded."""
-    page.wait_for_function("document.getElementById('of').textContent !== ''", timeout=60_000)
-    page.wait_for_timeout(1500)
 
 
 def test_the_grain_is_drawn_turned_stepped_through_and_saved(path, tmp_path):
@@ -62,18 +56,4 @@ def test_the_grain_is_drawn_turned_stepped_through_and_saved(path, tmp_path):
 
 
 def test_the_page_fits_a_phone(path):
-    width, height = 390, 760
-    with opened(path, width, height) as page:
-        wait(page)
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
-        boxes = {
-            name: page.locator(f"#{name}").bounding_box() for name in ("numbers", "colours", "steps", "picture", "of")
-        }
-        for box in boxes.values():
-            assert box["x"] >= 0 and box["x"] + box["width"] <= width and box["y"] + box["height"] <= height
-        assert boxes["colours"]["y"] + boxes["colours"]["height"] <= boxes["steps"]["y"] + 1
-        scene = slice(int(boxes["numbers"]["height"]), int(boxes["colours"]["y"]))
-        seen = picture(page)
-        # the grain, and nothing of it beyond the edges
-        assert drawn(seen, scene) > 1000
-        assert drawn(seen, scene, slice(0, 3)) == drawn(seen, scene, slice(-3, None)) == 0
+    fits_a_phone(path)

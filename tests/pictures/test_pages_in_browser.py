@@ -1,9 +1,10 @@
-"""The pages of a collision and of a compression in a browser: something is drawn, the slider moves."""
+"""The pages of a collision and of a compression in a browser: something is drawn, the slider moves, a phone will do."""
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from browser import drawn, opened, picture
+from browser import drawn, fits_a_phone, opened, picture, wait
 from ratd.pictures.box_page import box_page
 from ratd.pictures.collision_page import collision_page
 
@@ -39,15 +40,14 @@ def collision():
     ("made", "label", "told", "values"),
     [
         (compression, "all alike", "contacts", ("0.00", "6.00")),
-        (collision, "by the cluster that it came with", "pieces", ("2", "1")),
+        (collision, "by cluster of origin", "pieces", ("2", "1")),
     ],
 )
 def test_spheres_are_drawn_and_stepped_through(made, label, told, values, tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made(), encoding="utf-8")
     with opened(path) as page:
-        page.wait_for_function("document.getElementById('of').textContent !== ''", timeout=60_000)
-        page.wait_for_timeout(1500)
+        wait(page)
         first = picture(page)
         assert drawn(first, SCENE) > 3000
         assert page.inner_text("#of") == "1 of 3" and page.inner_text(f"#{told}") == values[0]
@@ -59,6 +59,17 @@ def test_spheres_are_drawn_and_stepped_through(made, label, told, values, tmp_pa
         page.get_by_label(label).check()
         page.wait_for_timeout(500)
         assert np.any(picture(page)[SCENE] != last[SCENE])
+        with page.expect_download() as download:
+            page.click("#picture")
+        download.value.save_as(tmp_path / "saved.png")
+    assert drawn(np.asarray(Image.open(tmp_path / "saved.png").convert("RGB")).astype(int)) > 3000
+
+
+@pytest.mark.parametrize("made", [compression, collision])
+def test_the_pages_fit_a_phone(made, tmp_path):
+    path = tmp_path / "page.html"
+    path.write_text(made(), encoding="utf-8")
+    fits_a_phone(path)
 
 
 def test_the_same_page_for_the_same_input():

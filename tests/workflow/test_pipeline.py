@@ -318,7 +318,7 @@ def test_report_in_a_browser(report):
         page.wait_for_selector("text=Dust aggregates, every monomer integrated.")
         tables = ["Calibration of the drive literal", "Runs of figure 9, drive prescribed", "Table 1", "Table 2"]
         assert rows(page, "Tables") == [*tables, "Table 3, drive prescribed"]
-        assert rows(page, "Figures") == ["1", "2", "4", "5", "6", "7", "8", "9", "10", "study"]
+        assert rows(page, "Spin-up") == ["1", "2", "4", "5", "6", "7", "8", "9", "10", "study"]
         assert rows(page, "Interactive") == ["one grain coming apart"]
 
 

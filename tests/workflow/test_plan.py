@@ -4,6 +4,7 @@ import os
 import re
 
 import pytest
+import yaml
 
 from tiny_pipeline import TINY, Pipeline
 
@@ -31,6 +32,16 @@ def test_wrong_config_ends_with_one_sentence_before_any_job(tmp_path, change, sa
     assert sentences[0].startswith(f"config: {said}") and lines.index(sentences[0]) == len(remarks)
     assert all(line.startswith(("Using workflow specific profile", "Config file ")) for line in remarks)
     assert not (tmp_path / "results").exists()
+
+
+def test_mistakes_of_all_experiments_are_told_at_once(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    own = {"spin_up": {"block_size": 0}, "compression": {"speed": 1}, "collision": {"records": 0}, "results": ["a"]}
+    (tmp_path / "tiny.yaml").write_text(yaml.safe_dump(own))
+    done = pipeline.run("--dry-run")
+    said = [line for line in done.stdout.splitlines() if line.startswith("config: ")]
+    beginnings = ["results", "spin_up.block_size", "the key 'speed' in compression", "collision.records"]
+    assert done.returncode == 1 and [line.split(" is ")[0] for line in said] == [f"config: {b}" for b in beginnings]
 
 
 def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):

@@ -1,6 +1,4 @@
 # Aggregates: one job a block of seeds of one material, type and size.
-PLAN = checked(spin_up_plan, config)
-say(PLAN.notes)
 NAMES = {
     "drive": PLAN.pattern("drives"),
     "material": PLAN.pattern("materials"),

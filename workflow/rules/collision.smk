@@ -1,5 +1,6 @@
 # Collisions: clusters built, brought to rest, shot at each other; tables and figures.
-COLLISIONS = checked(collision_plan, config)
+from ratd.experiments.collision.plan import TITLES as COLLISION_TITLES
+
 CELL = {
     name: COLLISIONS.pattern(name)
     for name in ("law", "cluster", "sample", "velocity", "impact")
@@ -7,12 +8,12 @@ CELL = {
 BUILT = "<results>/collision/built/{material}/{cluster}.nc"
 RELAXED = "<results>/collision/relaxed/{law}/{cluster}.nc"
 COLLIDED = "<results>/collision/runs/{law}/{cluster}/sample_{sample}/{velocity}mps_b{impact}.nc"
-COLLISION_TABLES = (
-    "collision_table",
-    "collision_thresholds",
-    "collision_clusters",
-    "collision_likeness",
-)
+COLLISION_TABLES = {
+    "collision_table": "Collisions",
+    "collision_thresholds": "Collisions: fragmentation velocities",
+    "collision_clusters": "Collisions: clusters",
+    "collision_likeness": "Collisions: equal spheres like the MRN law",
+}
 
 
 rule build_clusters:
@@ -97,8 +98,8 @@ rule collision_tables:
             f"{name}_csv": report(
                 f"<results>/collision/tables/{name}.csv",
                 caption="../report/collision_tables.rst",
-                category="Collision",
-                labels={"table": name.removeprefix("collision_"), "format": "CSV"},
+                category="Tables",
+                labels={"table": COLLISION_TABLES[name]},
             )
             for name in COLLISION_TABLES
         },
@@ -135,7 +136,7 @@ for name in COLLISIONS.figures:
                     f"<results>/collision/figures/{name}.{form}",
                     caption=f"../report/collision_{name}.rst",
                     category="Collision",
-                    labels={"figure": name, "format": form.upper()},
+                    labels=figure_labels(name, COLLISION_TITLES[name], form),
                 )
                 for form in ("pdf", "png")
             },

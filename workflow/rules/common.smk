@@ -2,16 +2,19 @@
 import atexit
 import re
 import sys
+from functools import partial
 from pathlib import Path
 
 from snakemake.utils import min_version
 
 from ratd.base.errors import InputError
 from ratd.experiments.collision.plan import check as collision_plan
+from ratd.experiments.compression.plan import check as compression_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
 from ratd.pipeline import first_error, jobs, unrecorded
-from ratd.pipeline.config import read_yaml
+from ratd.pipeline.config import read_yaml, together
 from ratd.pipeline.partial import tidy
+from ratd.pipeline.report import figure_labels
 from ratd.validation.plan import Checks
 
 min_version("9.27")

@@ -1,7 +1,6 @@
 # Static compression: clusters, runs, tables of runs that differ in their seeds alone, pulls, figures.
 from ratd.experiments.compression import plan as compression
 
-COMPRESSION = checked(compression.check, config)
 COMPRESSION_NAMES = {
     "set": "|".join(map(re.escape, COMPRESSION.config["sets"])),
     "pull": "|".join(map(re.escape, COMPRESSION.config["pulls"])),
@@ -147,7 +146,7 @@ for name in compression.FIGURES:
                     f"<results>/figures/compression_{name}.{form}",
                     caption="../report/compression.rst",
                     category="Compression",
-                    labels={"figure": name, "format": form.upper()},
+                    labels=figure_labels(name, compression.TITLES[name], form),
                 )
                 for form in ("pdf", "png")
             },

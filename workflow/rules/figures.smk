@@ -1,8 +1,9 @@
 # Figures, PDF for print and PNG for the screen: one rule each, of the name of the figure.
-from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, report_labels
+from ratd.experiments.spin_up.plan import COMMON_FIGURES, FIGURES, TITLES
 
 for name in (*FIGURES, *COMMON_FIGURES):
     stem = f"{name}_{{drive}}" if name in FIGURES else name
+    of_drive = {"drive": "{drive}"} if name in FIGURES else {}
 
     rule:
         name:
@@ -14,8 +15,8 @@ for name in (*FIGURES, *COMMON_FIGURES):
                 form: report(
                     f"<results>/figures/{stem}.{form}",
                     caption=f"../report/{name}.rst",
-                    category="Figures",
-                    labels=report_labels(name, form),
+                    category="Spin-up",
+                    labels=figure_labels(name, TITLES[name], form) | of_drive,
                 )
                 for form in ("pdf", "png")
             },

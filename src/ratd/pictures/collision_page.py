@@ -21,7 +21,8 @@ VIEW = np.array([0.15, -0.95, 0.28])
 TEMPLATE = Path(__file__).with_name("collision_page.html")
 SCRIPT = Path(__file__).with_name("collision_page.js")
 
-HINT = "The clusters come in along x, from left and right."
+SHORT = "The clusters come in along x, from left and right."
+HINT = f"{SHORT} X: what the heaviest piece has more than the second; N<sub>s</sub>: what is in neither; of all mass."
 
 
 def collision_page(time, position, radius, piece, origin, title):
@@ -74,7 +75,7 @@ def collision_page(time, position, radius, piece, origin, title):
         one=LARGEST,
         other=OTHERS[0],
     )
-    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"), HINT)
+    return finished_page(plot, panel, title, SCRIPT.read_text(encoding="utf-8"), HINT, SHORT)
 
 
 def _piece_colours(piece):

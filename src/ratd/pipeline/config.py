@@ -127,6 +127,9 @@ def check_layout(content, layout, where, inside=()):
 def _sentence(error, layout, inside):
     """What is wrong, from an error of jsonschema."""
     key = _dotted((*inside, *error.absolute_path))
+    if "propertyNames" in error.absolute_schema_path:
+        place = f" in {key}" if key else ""
+        return f"the key {error.instance!r}{place} is no name; allowed: {error.schema['description']}"
     if error.validator == "additionalProperties":
         unknown = sorted(set(error.instance) - set(error.schema["properties"]), key=str)
         place = f" in {key}" if key else ""
@@ -226,6 +229,35 @@ def load(*paths):
     return merged
 
 
+def together(*steps):
+    """Take some steps, and only then raise what was refused.
+
+    Parameters
+    ----------
+    *steps : callable
+        Without arguments.
+
+    Returns
+    -------
+    list
+        What each step gave.
+
+    Raises
+    ------
+    InputError
+        The sentences of all steps that were refused, a line each, none twice.
+    """
+    results, sentences = [], {}
+    for step in steps:
+        try:
+            results.append(step())
+        except InputError as error:
+            sentences |= dict.fromkeys(str(error).splitlines())
+    if sentences:
+        raise InputError("\n".join(sentences))
+    return results
+
+
 def section(config, name, schemas="config/schema"):
     """Keys of one experiment, checked as far as its schema says, together with the keys that all share.
 
@@ -255,15 +287,24 @@ def section(config, name, schemas="config/schema"):
     schemas = Path(schemas)
     layout = read_yaml(schemas / "config.schema.yaml")
     _check_finite(config, ())
-    check_layout(config, layout, "config")
     if name not in config:
         raise InputError(f"config: the key {name} is missing; allowed: {layout['properties'][name]['description']}")
     own = config[name]
-    check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,))
-    check_results_folder(config["results"])
     shared = {key: value for key, value in config.items() if key in layout["required"]}
+    *_, materials = together(
+        lambda: check_layout(config, layout, "config"),
+        lambda: check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,)),
+        lambda: check_results_folder(shared.get("results")),
+        lambda: _materials_of(shared.get("materials_file"), schemas),
+    )
     shared["results"] = shared["results"].rstrip("/") or "/"
-    return shared, own, read_materials(config["materials_file"], read_yaml(schemas / "materials.schema.yaml"))
+    return shared, own, materials
+
+
+def _materials_of(path, schemas):
+    """Materials of the user's file; a path that is none is told by the schema."""
+    if isinstance(path, str):
+        return read_materials(path, read_yaml(schemas / "materials.schema.yaml"))
 
 
 def base(name, schemas="config/schema"):
@@ -309,17 +350,21 @@ def check_results_folder(results, project="."):
 
     Parameters
     ----------
-    results : str
+    results : object
+        What is no path, or none at all, is told by the schema.
     project : path-like, optional
         Folder of the project, whose own folders hold no results.
     """
+    if not isinstance(results, str) or not results:
+        return
     project = Path(project).resolve()
     folder = (project / results).resolve()
     inside = folder.relative_to(project).parts[:1] if folder.is_relative_to(project) else ()
-    if project.is_relative_to(folder) or set(inside) & set(OWN_FOLDERS) or inside and inside[0].startswith("."):
+    holds_others = project.is_relative_to(folder) or Path.home().is_relative_to(folder)
+    if holds_others or set(inside) & set(OWN_FOLDERS) or inside and inside[0].startswith("."):
         raise InputError(
             f"config: results is {results!r}; allowed: the path of a folder that holds nothing else, such as "
-            f"results/mine, and neither {', '.join(OWN_FOLDERS)} nor what this project lies in"
+            f"results/mine, and neither {', '.join(OWN_FOLDERS)} nor what this project or your home lies in"
         )
 
 

@@ -61,6 +61,10 @@ def test_the_steps_go_from_the_config_to_the_run():
     ("change", "said"),
     [
         ({"figures": {"figure4": {"set": "x"}}}, "config: compression.figures.figure4 names the set 'x'; allowed: fid"),
+        (
+            {"figures": {"tension": {"pulls": ["y"]}}},
+            "config: compression.figures.tension names the pull 'y'; all",
+        ),
         ({"all_sets": {"n": 1000}}, "config: compression.all_sets.n is 1000; allowed: a power of 2 from 2"),
         ({"all_sets": {"strain_rate": 0}}, "compression.all_sets.strain_rate is 0; allowed: a number above 0"),
         ({"sets": {"fiducial": {"material": "x"}}}, "compression.sets.fiducial.material is 'x'; allowed: a-C"),

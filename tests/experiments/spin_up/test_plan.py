@@ -1,6 +1,7 @@
 """The config: what is refused, with which words, and what follows from what is accepted."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -145,6 +146,7 @@ def test_quick_is_three_of_each():
         ({"results": "results/../src"}, "results is 'results/../src'", "the path of a folder"),
         ({"results": "docs/reproduction"}, "results is 'docs/reproduction'", "the path of a folder"),
         ({"results": ".snakemake"}, "results is '.snakemake'", "the path of a folder"),
+        ({"results": str(Path.home())}, f"results is '{Path.home()}'", "the path of a folder"),
         (
             {"snapshots": {"grains": [{"material": "q-S", "type": "BA", "size_nm": 50, "seed": 30}]}},
             "snapshots.grains[0].seed is 30",
@@ -218,6 +220,14 @@ def test_all_mistakes_are_named_at_once_a_line_each():
     keys = [line.split(" is ")[0] for line in str(error.value).splitlines()]
     beginnings = ["materials[0]", "sizes_nm[0]", "sizes_nm[0]", "sizes_nm[0]", "figures.figure4.size_nm"]
     assert keys == [f"config: spin_up.{key}" for key in beginnings]
+
+
+def test_mistakes_of_all_files_are_named_at_once(tmp_path):
+    changes = {"results": "docs", "block_size": 0} | materials_file(tmp_path, "sn.ow: {mix: {a-C: 1.0}}\n")
+    with pytest.raises(InputError) as error:
+        with_changes(changes)
+    said = ("config: spin_up.block_size is 0; ", "config: results is 'docs'; ", "the key 'sn.ow' is no name; ")
+    assert len(str(error.value).splitlines()) == 3 and all(words in str(error.value) for words in said)
 
 
 def test_a_config_says_only_what_it_wants():
@@ -511,9 +521,12 @@ def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
     ("text", "said"),
     [
         ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
-        ("a/b: {mix: {a-C: 1.0}}\n", "'a/b'; allowed: a name of letters"),
+        ("a/b: {mix: {a-C: 1.0}}\n", "the key 'a/b' is no name; allowed: a name of letters"),
         ("snow: {density_kg_m3: 1000, poisson_number: 0.2, youngs_modulus_GPa: 1}\n", "snow.surface_energy_mJ_m2 is"),
-        ("sn.ow: {mix: {a-C: 1.0}}\n", "'sn.ow'; allowed: a name of letters, digits and the signs _ + -"),
+        (
+            "sn.ow: {mix: {a-C: 1.0}}\n",
+            "the key 'sn.ow' is no name; allowed: a name of letters, digits",
+        ),
         ("snow: {mix: {a-C: 1.0}}\nsnow: {mix: {q-S: 1.0}}\n", "line 2: the key 'snow' stands in one mapping twice"),
         ("snow: {mix: {a-C: 0.4}}\n", "add up to 1"),
         ("snow: {mix: {b-C: 1.0}}\n", "b-C"),

@@ -5,12 +5,13 @@ A *cell* is a law, a cluster, one of its samples, a velocity and an impact param
 
 import re
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pipeline import config as configs
 
-__all__ = ["BUILT", "FIGURES", "RELAXED", "RUNS", "Cell", "Plan", "check", "load"]
+__all__ = ["BUILT", "FIGURES", "RELAXED", "RUNS", "TITLES", "Cell", "Plan", "check", "load"]
 
 FIGURES = {
     "figure1": ("figure1", "built"),
@@ -26,6 +27,20 @@ FIGURES = {
     "scaling": ("scaling", "thresholds"),
 }
 """Figure -> module that draws it, and what it is drawn from."""
+TITLES = {
+    "figure1": "the MRN law and its samples",
+    "figure2": "lengths that stand for the MRN law",
+    "figure3": "a collision at the lower velocity",
+    "figure4": "a collision at the higher velocity",
+    "figure5": "X and N_s of equal spheres",
+    "figure6": "X and N_s of MRN clusters",
+    "figure7": "kinetic energy against time",
+    "figure8": "kinetic energy against radius",
+    "dissipation": "where the energy goes",
+    "masses": "masses of the pieces",
+    "scaling": "fragmentation beside sticking",
+}
+"""Figure -> what it shows, in the list of the report."""
 SPACING = {"figure3": 0.1e-6, "figure4": 0.15e-6}
 """Time between two pictures [s], as printed."""
 
@@ -97,22 +112,26 @@ def check(config, schemas="config/schema"):
     Raises
     ------
     InputError
-        One sentence that names the first key that is wrong, and what is allowed.
+        One sentence for each key that is wrong, with what is allowed.
     """
     shared, own, materials = configs.section(config, "collision", schemas)
-    for k, entry in enumerate(own["runs"]):
-        for key in ("laws", "clusters"):
-            for name in entry[key]:
-                if name not in own[key]:
-                    raise InputError(
-                        f"{_WHERE}.runs[{k}].{key} has {name!r}; allowed: {', '.join(own[key])}, the keys of {key}"
-                    )
+    mistakes = [
+        f"{_WHERE}.runs[{k}].{key} has {name!r}; allowed: {', '.join(own[key])}, the keys of {key}"
+        for k, entry in enumerate(own["runs"])
+        for key in ("laws", "clusters")
+        for name in entry[key]
+        if name not in own[key]
+    ]
     named = {"material": own["material"]} | {
         f"laws.{name}.material": law["material"] for name, law in own["laws"].items() if "material" in law
     }
-    for key, name in named.items():
-        if name not in materials:
-            raise InputError(f"{_WHERE}.{key} is {name!r}; allowed: {', '.join(materials)}")
+    mistakes += [
+        f"{_WHERE}.{key} is {name!r}; allowed: {', '.join(materials)}"
+        for key, name in named.items()
+        if name not in materials
+    ]
+    if mistakes:
+        raise InputError("\n".join(mistakes))
     plan = Plan(own, materials, shared["results"])
     plan.check_figures()
     return plan
@@ -355,13 +374,14 @@ class Plan:
 
     def check_figures(self):
         """Raise InputError unless all that is to be drawn is computed."""
-        for one in self.config["snapshots"]["runs"]:
-            self.snapshot_file(one)
-        own = self.config["figures"]
-        for key in ("law", "mrn", "twin"):
-            table = "laws" if key == "law" else "clusters"
-            if own[key] not in self.config[table]:
-                raise InputError(
-                    f"{_WHERE}.figures.{key} is {own[key]!r}; allowed: {', '.join(self.config[table])}, the keys of "
-                    f"{table}"
-                )
+        configs.together(
+            *(partial(self.snapshot_file, one) for one in self.config["snapshots"]["runs"]),
+            *(partial(self._check_name, key) for key in ("law", "mrn", "twin")),
+        )
+
+    def _check_name(self, key):
+        """Raise InputError unless there is the law or the cluster that the figures name."""
+        name, table = self.config["figures"][key], "laws" if key == "law" else "clusters"
+        if name not in self.config[table]:
+            allowed = f"{', '.join(self.config[table])}, the keys of {table}"
+            raise InputError(f"{_WHERE}.figures.{key} is {name!r}; allowed: {allowed}")

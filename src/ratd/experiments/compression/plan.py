@@ -1,6 +1,7 @@
 """The plan of the compression: a checked config, the settings of each job, and the runs that the figures need."""
 
 from dataclasses import asdict, replace
+from functools import partial
 
 from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.base.errors import InputError
@@ -9,14 +10,26 @@ from ratd.pipeline import config as configs
 
 __all__ = ["FIGURES", "Plan", "check", "load"]
 
-FIGURES = (
-    *(f"figure{number}" for number in range(3, 14)),
-    "isotropy",
-    "high_density",
-    "tension",
-    "monomers",
-    "fewer_steps",
-)
+TITLES = {
+    "figure3": "one cluster among its copies",
+    "figure4": "pressure against filling factor",
+    "figure5": "strain rates",
+    "figure6": "numbers of monomers",
+    "figure7": "normal damping",
+    "figure8": "where the energy goes",
+    "figure9": "rolling displacements",
+    "figure10": "where the energy goes, by rolling displacement",
+    "figure11": "monomers near a monomer",
+    "figure12": "pressure of silicate",
+    "figure13": "silicate beside other work",
+    "isotropy": "pressure along the three axes",
+    "high_density": "high filling factors",
+    "tension": "tensile strength",
+    "monomers": "unequal monomers",
+    "fewer_steps": "the semi-implicit step beside the explicit one",
+}
+"""Figure -> what it shows, in the list of the report."""
+FIGURES = tuple(TITLES)
 CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
 RUN = "<results>/compression/{set}/seed_{seed}.nc"
 TABLE = "<results>/compression/{set}.nc"
@@ -46,22 +59,33 @@ def check(config, schemas="config/schema"):
     Raises
     ------
     InputError
-        One sentence that names the first key that is wrong, and what is allowed.
+        One sentence for each key that is wrong, with what is allowed.
     """
     shared, own, materials = configs.section(config, "compression", schemas)
     plan = Plan(own, materials, shared["results"])
-    for name in plan.figures:
-        for wanted in plan.sets_of(name):
-            if wanted not in own["sets"]:
-                allowed = ", ".join(own["sets"])
-                raise InputError(f"config: compression.figures.{name} names the set {wanted!r}; allowed: {allowed}")
-    for name in plan.sets:
-        material = plan.of_set(name)["material"]
-        if material not in materials:
-            allowed = ", ".join(materials)
-            raise InputError(f"config: compression.sets.{name}.material is {material!r}; allowed: {allowed}")
-        plan.grow(name)
+    configs.together(*(partial(_check_names, plan, name) for name in plan.figures))
+    configs.together(*(partial(_check_set, plan, name) for name in plan.sets))
     return plan
+
+
+def _check_names(plan, figure):
+    """Raise InputError unless there are the sets and pulls that a figure names."""
+    where = f"config: compression.figures.{figure} names the"
+    for pull in plan.config["figures"][figure].get("pulls", ()):
+        if pull not in plan.config["pulls"]:
+            raise InputError(f"{where} pull {pull!r}; allowed: {', '.join(plan.config['pulls'])}")
+    for wanted in plan.sets_of(figure):
+        if wanted not in plan.config["sets"]:
+            raise InputError(f"{where} set {wanted!r}; allowed: {', '.join(plan.config['sets'])}")
+
+
+def _check_set(plan, name):
+    """Raise InputError unless the clusters of a set can be grown."""
+    material = plan.of_set(name)["material"]
+    if material not in plan.materials:
+        allowed = ", ".join(plan.materials)
+        raise InputError(f"config: compression.sets.{name}.material is {material!r}; allowed: {allowed}")
+    plan.grow(name)
 
 
 class Plan:

@@ -6,7 +6,7 @@ from ratd.experiments.spin_up.seeds import cell_of, size_label
 from ratd.experiments.spin_up.settings import Settings
 from ratd.pipeline import config as configs
 
-__all__ = ["COMMON_FIGURES", "FIGURES", "Plan", "check", "load", "report_labels"]
+__all__ = ["COMMON_FIGURES", "FIGURES", "TITLES", "Plan", "check", "load"]
 
 FIGURES = ("figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "figure9")
 """Figures that are drawn for each drive."""
@@ -31,16 +31,6 @@ TITLES = {
 
 GRAINS = "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
 RUNS = "<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
-
-
-def report_labels(name, form):
-    """Labels of a figure in the report, whose list is sorted by them as text, dict of str."""
-    number = name.removeprefix("figure")
-    return {
-        "figure": f"{number:>2}" if number.isdigit() else "study",
-        "shows": TITLES[name],
-        "format": form.upper(),
-    } | ({"drive": "{drive}"} if name in FIGURES else {})
 
 
 def load(*paths, schemas="config/schema"):
