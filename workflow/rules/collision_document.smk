@@ -77,7 +77,7 @@ rule collision_document:
         table=page.TABLES.format(name="collision_table"),
         thresholds=page.TABLES.format(name="collision_thresholds"),
         likeness=page.TABLES.format(name="collision_likeness"),
-        template="docs/collision/template.md",
+        template="docs/templates/collision.md",
     output:
         document="docs/collision.md",
     log:

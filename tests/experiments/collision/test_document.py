@@ -1,6 +1,6 @@
 """docs/collision.md: it is its template filled from the committed collisions, and what its sentences say holds.
 
-When a claim fails after further collisions: reread the sentence in docs/collision/template.md, mend it and the claim.
+When a claim fails after further collisions: reread the sentence in docs/templates/collision.md, mend it and the claim.
 """
 
 from types import SimpleNamespace
@@ -37,7 +37,7 @@ def test_claims_can_fail(tables):
 
 
 def test_the_document_is_its_template_filled(tables):
-    template = (DOCS / "collision" / "template.md").read_text(encoding="utf-8")
+    template = (DOCS / "templates" / "collision.md").read_text(encoding="utf-8")
     wanted = fill(template, values(tables.table, tables.thresholds, tables.likeness))
     assert (DOCS / "collision.md").read_text(encoding="utf-8") == wanted, "snakemake --cores 1 collision_document"
 
