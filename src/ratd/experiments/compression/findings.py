@@ -248,7 +248,8 @@ def verdicts(values, sets):
             ratio = values[f"{name}.ratio_{phi:g}"].value
             found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
     exponent = values["fiducial.exponent"]
-    found["exponent"] = "agrees" if abs(exponent.value - 3.0) < max(0.3, 2.0 * exponent.error) else "differs"
+    steeper = exponent.value - 3.0
+    found["exponent"] = "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
     for name, phi in (("fiducial", 0.1), (HIGH, 0.48)):
         if f"{name}.rolling_{phi:g}" in values:
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"])
