@@ -116,6 +116,8 @@ def balance(folder):
         table = io.read(path, "compression_set")
         explicit = table.attrs["integrator"].startswith("Leapfrog")
         part = np.abs(table["energy_residual"].values / table["work"].values)[:, table["phi"].values > FROM_PHI]
+        if part.size == 0:
+            continue
         name = "compression" if explicit else "long steps"
         rows.append({"experiment": name, "set": path.stem, "runs": len(part), "worst": np.nanmax(part)})
     collisions = collision_table(

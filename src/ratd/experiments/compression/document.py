@@ -112,7 +112,7 @@ def draw(name, plan, sets, entries, grains, data):
         path = data / "snapshots.nc"
         return module.figure3(io.read(path, "compression_snapshots")) if path.is_file() else None
     tables = [sets[wanted] for wanted in plan.sets_of(name) if wanted in sets]
-    if not tables or name == "fewer_steps" and all("Leapfrog" in table.attrs["integrator"] for table in tables):
+    if not tables:
         return None
     if name == "monomers":
         equal, *others = tables

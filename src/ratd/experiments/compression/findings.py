@@ -45,6 +45,7 @@ def of_set(name, table):
     """Numbers of one set: name -> value, each name beginning with that of the set."""
     found = {"n": table.sizes["seed_number"], "N": table["n_monomers"].item()}
     found["steps"] = float(np.mean(table["steps"].values)) / 1e6
+    found["rate"] = float(table["strain_rate"].values[0])
     found["static"] = float(table["static_from"].values[0])
     found["P0"] = float(table["rolling_pressure"].values[0])
     found["start"] = float(np.mean(table["phi_start"].values))

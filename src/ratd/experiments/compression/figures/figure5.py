@@ -1,6 +1,6 @@
 """Fig. 5 of Kataoka et al. (2013): the pressure at different strain rates."""
 
-from ratd.experiments.compression.figures.common import pressures, read_sets, seeds_text, strain_text
+from ratd.experiments.compression.figures.common import pressures, read_sets, strain_text
 from ratd.pictures.style import styled
 
 
@@ -8,7 +8,7 @@ from ratd.pictures.style import styled
 def figure5(tables):
     """Mean pressures of sets with different C_v."""
     labels = [f"{strain_text(table)}, {table.sizes['seed_number']} runs" for table in tables]
-    return pressures(tables, labels, f"{tables[0].attrs['material']}, {seeds_text(tables[0])}")
+    return pressures(tables, labels, f"{tables[0].attrs['material']}, N = {tables[0]['n_monomers'].item()}")
 
 
 def draw(files, settings):
