@@ -156,6 +156,7 @@ def stretch(
     axes: Literal["x", "xyz"] = "x",
     law: Any = None,
     timestep_factor: float = 0.14,
+    long_steps: LongSteps | None = None,
     checkpoint: str | Path | None = None,
     progress: Callable[..., object] | None = None,
 ) -> Any: ...

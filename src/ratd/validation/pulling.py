@@ -24,8 +24,8 @@ from ratd.aggregates.grain import Grain
 from ratd.base.units import NM
 from ratd.engine.contacts import get_image
 from ratd.engine.layout import CONTACTS
-from ratd.engine.semi_implicit import semi_implicit
 from ratd.experiments.compression.run import Cluster, compress
+from ratd.experiments.compression.steps import LongSteps
 from ratd.experiments.compression.strain import state_of
 from ratd.experiments.compression.stretch import stretch
 from ratd.experiments.relax import relax
@@ -61,10 +61,8 @@ ENDS = {
 """Pulls by the ends: part of the mass held at each, and the strain rate; the usual one along all three axes."""
 DENSEST = 0.62
 """Filling factor above which no grain is squeezed."""
-LONGEST = 3.0
-"""The longest step in the box, in t_0."""
-STEP = {"displacement": 2e-10, "travel": 2e-9, "calming": 0.1}
-"""What else the step may do there, see `ratd.engine.semi_implicit`."""
+STEPS = LongSteps(longest=3.0, until_phi=1.0)
+"""Steps in the box: the smallest monomers would make explicit ones far too short."""
 _AXIS = {"shortest": 2, "middle": 0, "longest": 1}
 """Coordinates of a relaxed grain along its axes, see `ratd.experiments.relax.relax`."""
 
@@ -97,7 +95,7 @@ def tasks(plan, data):
 
 def _table(plan, data, material, kind):
     """The table of a material and type."""
-    settings = {"growth": plan.growth(material, kind), "box": BOX, "ends": ENDS, "step": STEP | {"longest": LONGEST}}
+    settings = {"growth": plan.growth(material, kind), "box": BOX, "ends": ENDS, "steps": STEPS._asdict()}
     return Table(Path(data, f"{material}_{kind}.nc"), KIND, ("a_eff", "seed"), plan.materials[material], settings)
 
 
@@ -169,15 +167,13 @@ def in_the_box(grain, variants=BOX):
     """
     grain = lengthwise(grain)
     own = grain.shape.filling_factor
-    integrator = semi_implicit(longest=LONGEST * Cluster(grain).time_unit, **STEP)
     found = []
     for name, how in variants.items():
         phi = how["part"] * own
         if grain.a_eff > 1.001 * how["up_to_nm"] * NM or phi > DENSEST:
             continue
-        common = {"integrator": integrator}
-        squeezed = compress(grain, how["squeeze_rate"], phi, snapshots=(), balance=False, **common)
-        run = stretch(squeezed, how["strain_rate"], **common)
+        squeezed = compress(grain, how["squeeze_rate"], phi, snapshots=(), balance=False, long_steps=STEPS)
+        run = stretch(squeezed, how["strain_rate"], long_steps=STEPS)
         about = run.attrs
         found.append(
             _pull(

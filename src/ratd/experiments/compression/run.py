@@ -152,7 +152,9 @@ def compress(
     strain_rate = _positive("strain_rate", strain_rate)
     box, first, until_phi = _box(cluster, strain_rate, until_phi, box_length, scheme)
     law = jkr(damping="constant", constant_damping=K_N) if law is None else law
-    first_integrator, explicit = integrators(cluster, timestep_factor, long_steps)
+    first_integrator, explicit = integrators(
+        cluster.grain.material, cluster.radius, cluster.time_unit, timestep_factor, long_steps
+    )
     parts = Parts(law, box, first_integrator)
     static = _static_from(cluster, box)
 

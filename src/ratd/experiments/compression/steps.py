@@ -35,12 +35,16 @@ class LongSteps(NamedTuple):
     until_phi: float = 0.2
 
 
-def integrators(cluster, timestep_factor, long_steps):
+def integrators(material, radius, time_unit, timestep_factor, long_steps):
     """The integrators of a compression.
 
     Parameters
     ----------
-    cluster : ratd.experiments.compression.run.Cluster
+    material : Material
+    radius : float
+        r_0 [m].
+    time_unit : float
+        t_0 [s].
     timestep_factor : float
         f of the explicit step.
     long_steps : LongSteps or None
@@ -63,9 +67,8 @@ def integrators(cluster, timestep_factor, long_steps):
         value = getattr(long_steps, name)
         if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
-    material = cluster.grain.material
-    natural = equilibrium_compression(0.5 * cluster.radius, material.surface_energy, material.reduced_modulus)
+    natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
     displacement = long_steps.displacement * natural
-    longest = long_steps.longest * cluster.time_unit
+    longest = long_steps.longest * time_unit
     how = {"displacement": displacement, "travel": displacement, "calming": long_steps.calming}
     return semi_implicit(longest=longest, **how), explicit

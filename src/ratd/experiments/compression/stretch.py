@@ -1,17 +1,20 @@
 """Pull a compressed cluster until it comes apart, in a periodic box that grows."""
 
+from dataclasses import fields
+
 import numpy as np
 
 from ratd.base.errors import InputError
+from ratd.base.materials import Material
 from ratd.drives.squeezing import squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
-from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import come_to_rest
 from ratd.engine.step import run, until
 from ratd.experiments.compression.run import K_N, TIMESTEP_FACTOR
 from ratd.experiments.compression.static import box_rate
+from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.geometry.box import periodic
@@ -40,6 +43,7 @@ def stretch(
     axes="x",
     law=None,
     timestep_factor=TIMESTEP_FACTOR,
+    long_steps=None,
     checkpoint=None,
     progress=None,
 ):
@@ -53,7 +57,7 @@ def stretch(
         The box grows with dL/dt = 2 C_v L/t_0.
     axes : {"x", "xyz"}
         Axes along which it grows; the others stay.
-    law, timestep_factor, checkpoint
+    law, timestep_factor, long_steps, checkpoint
         As of `ratd.compress`; the law has to be that of the compression.
     progress : callable, optional
         Called every few seconds as ``progress(phi, tension, seconds_to_go)``.
@@ -83,7 +87,9 @@ def stretch(
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = jkr(damping="constant", constant_damping=K_N) if law is None else law
-    integrator = leapfrog(timestep_factor=timestep_factor)
+    kept = compressed.attrs
+    own = Material(kept["material"], *(kept[field.name] for field in fields(Material) if field.name != "name"))
+    integrator, _ = integrators(own, kept["monomer_radius"], kept["time_unit"], timestep_factor, long_steps)
     edges = compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, compressed.attrs["time_unit"])
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
