@@ -227,6 +227,7 @@ def make_matrix(state, law, box, theta, dt, work):
             diagonal[at + (PADDED + 1) * (c + 3)] = SPHERE * m
     edges = box.edges(state.scalar)
     hx, hy, hz = box.rates()
+    changing = hx != 0.0 or hy != 0.0 or hz != 0.0
     weight = theta * dt * dt
     block = np.empty((6, 6))
     for k in range(state.counter[CONTACTS]):
@@ -247,9 +248,10 @@ def make_matrix(state, law, box, theta, dt, work):
         _add_block(diagonal, BLOCK * factor.place[j], block, False)
         _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm_i, arm_j)
         _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
-        recede = (hx * dx, hy * dy, hz * dz)
-        _add_strain(strain, PADDED * factor.place[i], recede, n, k_n, k_s, 1.0, arm_i)
-        _add_strain(strain, PADDED * factor.place[j], recede, n, k_n, k_s, -1.0, arm_j)
+        if changing:
+            recede = (hx * dx, hy * dy, hz * dz)
+            _add_strain(strain, PADDED * factor.place[i], recede, n, k_n, k_s, 1.0, arm_i)
+            _add_strain(strain, PADDED * factor.place[j], recede, n, k_n, k_s, -1.0, arm_j)
     if not factorise(factor):
         state.scalar[FASTEST] = math.nan
     work.made[0], work.made[1] = dt, 0.0
