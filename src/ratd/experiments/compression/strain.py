@@ -103,7 +103,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         Positions at the snapshots [m], unwrapped, in the order of the input.
     """
     law, box, integrator = parts
-    change, explicit = (None, None) if later is None else later
+    change, explicit = (math.inf, None) if later is None else later
     drive = squeezing()
     loaded = checkpoints.load(checkpoint, key)
     if loaded is None:
@@ -117,8 +117,8 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     for number in range(len(rows), len(marks) + 1):
         if stop is not None and stop(np.array(rows)):
             break
-        explicitly = change is not None and number > change
-        parts = parts._replace(integrator=explicit if explicitly else integrator)
+        parts = parts._replace(integrator=integrator if number <= change else explicit)
+        long = isinstance(parts.integrator, SemiImplicit)
         state, _ = run(state, law, drive, box, parts.integrator, until(time=marks[number - 1]))
         if number == change:
             state = hand_over(state, law, drive, box, integrator, explicit)
@@ -127,8 +127,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         if number in snapshots:
             kept.append(positions(state))
         if check is not None:
-            long = later is not None and not explicitly
-            check(as_dict(rows[-1]), as_dict(rows[change]) if explicitly else None, long)
+            check(as_dict(rows[-1]), as_dict(rows[change]) if number > change else None, long)
         now = clock.monotonic()
         if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
             checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)

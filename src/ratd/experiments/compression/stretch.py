@@ -87,11 +87,11 @@ def stretch(
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = jkr(damping="constant", constant_damping=K_N) if law is None else law
-    kept = compressed.attrs
-    own = Material(kept["material"], *(kept[field.name] for field in fields(Material) if field.name != "name"))
-    integrator, _ = integrators(own, kept["monomer_radius"], kept["time_unit"], timestep_factor, long_steps)
+    attrs = compressed.attrs
+    material = Material(attrs["material"], *(attrs[field.name] for field in fields(Material) if field.name != "name"))
+    integrator, _ = integrators(material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps)
     edges = compressed["box_length"].values[-1]
-    rate = -box_rate(strain_rate, compressed.attrs["time_unit"])
+    rate = -box_rate(strain_rate, attrs["time_unit"])
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
     marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
 
@@ -120,7 +120,7 @@ def stretch(
     )
     about = {"tensile_strength": pull[best], "phi_strength": _smooth(found["phi_mean"].values)[best]}
     about |= {"phi_start": compressed["phi"].values[-1], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
-    kept = {name: compressed.attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
+    kept = {name: attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
     )
