@@ -63,6 +63,17 @@ def test_two_clusters_that_collide():
     assert ratd.fragmentation_velocity(names["table"])["velocity"] == pytest.approx(1.5)
 
 
+def test_the_python_of_the_readme():
+    """With a grain that takes a second."""
+    lines = README.read_text(encoding="utf-8").split("## From Python\n")[1].split("If your aggregate")[0].splitlines()
+    text = "\n".join(line[4:] for line in lines)
+    assert '"BAM2", a_eff=200e-9' in text
+    names = {}
+    exec(text.replace('"BAM2", a_eff=200e-9', '"BA", a_eff=60e-9'), names)
+    omega = names["ratd"].disruption(names["run"])["omega_disr"]
+    assert names["run"]["omega"].values.max() > omega > 1e8
+
+
 def test_the_readme_is_one_screen_and_what_it_names_is_there():
     text = README.read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 80

@@ -100,6 +100,22 @@ def test_explicit_step_gives_the_same_marks(run, grain):
     assert float(explicit["omega_mass_75"]) == pytest.approx(float(quarter), rel=0.02)
 
 
+@pytest.mark.parametrize("drive", ["prescribed", "torque"])
+def test_work_of_the_torque_is_stored_dissipated_dragged_and_carried_off(drive):
+    """To a thousandth while the grain is whole; to some per cent with the fragments, whose flight is explicit."""
+    run = spin_up(ratd.grow("BAM1", 100e-9, "q-S", 1), drive=drive)
+    gap = np.abs(run.energy_residual.values[20:] / run.torque_work.values[20:])
+    whole = run.n_monomers.values[20:] == run.n_monomers.values[0]
+    assert gap[whole].max() < 2e-3 and gap.max() < 0.03
+    assert float(run.dissipated_drag[-1]) > 3 * gap[-1] * float(run.torque_work[-1])
+
+
+def test_a_run_that_leaves_the_balance_says_so(grain, monkeypatch):
+    monkeypatch.setattr(runs, "BALANCE", 1e-6)
+    with pytest.raises(RuntimeError, match=r"the balance of energy is off by .* J, .*% of the work; at most 0% is"):
+        spin_up(grain, stretch=5e-14)
+
+
 def test_torque_keeps_the_angular_momentum_while_a_grain_gives_way():
     """Two equal monomers that part: omega falls as they stretch, L does not."""
     grain = pair(30e-9, 30e-9)

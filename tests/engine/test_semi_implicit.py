@@ -199,3 +199,22 @@ def test_steps_are_rungs_of_a_ladder():
 def test_bad_options_get_a_sentence(wrong, words):
     with pytest.raises(InputError, match=words):
         semi_implicit(**({"longest": 1e-9} | wrong))
+
+
+@pytest.mark.parametrize("gap", [5.1e-9, 5.25e-9, 5.4e-9, 5.6e-9])
+def test_spheres_land_with_a_small_overlap(gap):
+    """However the long steps fall: the contact is there when they touch, and the next step knows it."""
+    radius = np.full(2, 20e-9)
+    position = np.array([[0.0, 0.0, 0.0], [2 * radius[0] + gap, 0.0, 0.0]])
+    integrator = semi_implicit(longest=2.5e-10, displacement=2e-10, travel=2e-9)
+    velocity = np.array([[1.5, 0.0, 0.0], [-1.5, 0.0, 0.0]])
+    state = new_state(position, radius, MATERIALS["q-S"], [], LAW, BOX, integrator, velocity=velocity)
+    state.scalar[DT] = 2.5e-10
+    overlap = []
+    while not overlap or state.counter[CONTACTS] == 0:
+        state, _ = run(state, LAW, free(), BOX, integrator, until(steps=int(state.counter[0]) + 1))
+        rows = monomer_rows(state)
+        overlap.append(2 * radius[0] - np.linalg.norm(rows[0, X : X + 3] - rows[1, X : X + 3]))
+    assert (np.array(overlap[:-1]) < 0.0).all() and 0.0 < overlap[-1] <= 2.001e-10
+    state, _ = run(state, LAW, free(), BOX, integrator, until(steps=int(state.counter[0]) + 1))
+    assert state.scalar[DT] * 3.0 < 3e-10

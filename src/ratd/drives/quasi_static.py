@@ -16,12 +16,12 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
 from ratd.drives.rotating import (
-    ANGULAR_MOMENTUM, EXCESS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, TORQUE_WORK, UNREST, UNWIND, centre,
-    drop_departed, follow_largest, sample_stress, turn_to_take_out,
+    ANGULAR_MOMENTUM, DRAGGED, EXCESS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, TORQUE_WORK, UNREST, UNWIND, centre,
+    drop_departed, follow_largest, sample_stress, turn_to_take_out, work_of_torque,
 )  # fmt: skip
 from ratd.engine.layout import (
     DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STRETCH, TORQUE_X, VX,
-    WX, X,
+    VY, WX, WZ, X, Y,
 )  # fmt: skip
 
 TURN = 0.04
@@ -87,10 +87,12 @@ class QuasiStatic(NamedTuple):
     def move(self, state, box, kick, dt):
         drive = state.drive
         omega, unwind = drive[OMEGA], drive[UNWIND]
-        momentum, inertia, energy, fastest = kick_and_drift(
-            state, kick, dt, unwind, math.exp(-self.drag * omega * kick)
-        )
+        keep = math.exp(-self.drag * omega * kick)
+        momentum, inertia, energy, before, fastest = kick_and_drift(state, kick, dt, unwind, keep)
         inertia += drive[OWN_INERTIA]
+        # In the inertial frame: of the motion in the turning one, and of its angular momentum, which the torque gives
+        # back.
+        drive[DRAGGED] += (1.0 - keep * keep) * before + (1.0 - keep) / keep * omega * (momentum - unwind * inertia)
         reference = max(omega, self.omega_1)
         unrest = math.sqrt(2.0 * energy / inertia) / reference
         quiet = max(0.0, 1.0 - (unrest / self.unrest) ** 2)
@@ -105,13 +107,12 @@ class QuasiStatic(NamedTuple):
                 # a new fragment: it keeps what it has, and the frame follows
                 drive[ANGULAR_MOMENTUM] = inertia * omega + momentum
             drive[ANGULAR_MOMENTUM] += inertia * rate * dt
-            drive[TORQUE_WORK] += rate * dt * (inertia * omega + momentum)
             drive[OMEGA] = drive[ANGULAR_MOMENTUM] / inertia
+            leave_behind(state, drive[OMEGA] - omega)
         else:
-            # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
-            drive[TORQUE_WORK] += (rate * dt + unwind) * (inertia * omega + momentum)
             drive[OMEGA] = omega + rate * dt
             drive[ANGULAR_MOMENTUM] = inertia * drive[OMEGA]
+        drive[TORQUE_WORK] += work_of_torque(inertia, omega, momentum, unwind, drive[OMEGA] - omega)
         drive[GREATEST] = max(drive[GREATEST], drive[OMEGA])
         state.scalar[FASTEST] = fastest if abs(momentum) < np.inf else math.nan
 
@@ -197,23 +198,24 @@ def kick_and_drift(state, kick, dt, unwind, keep):
 
     Returns
     -------
-    angular_momentum, inertia, energy : float
-        Of the largest fragment in the frame, after the kick: about z [kg m2 s-1], of its centres [kg m2], kinetic [J].
+    angular_momentum, inertia, energy, before : float
+        Of the largest fragment in the frame, after the kick: about z [kg m2 s-1], of its centres [kg m2], kinetic [J];
+        kinetic before the drag and the torque [J].
     fastest : float
         Greatest speed of any monomer [m/s].
 
     Notes
     -----
     The outer torque, and the change of the frame's omega, are rigid rotations of the largest fragment; both
-    are part of `unwind`. On the others, which no torque drives, the Euler force is left out: they leave within a small
-    part of the time in which omega changes.
+    are part of `unwind`. On the others, which no torque drives, the Euler force is left out where omega is prescribed:
+    they leave within a small part of the time in which it changes. For a torque see `leave_behind`.
     """
     monomer, force = state.monomer, state.force
     nothing = vector4(0.0, 0.0, 0.0, 0.0)
     unwinding = vector4(-unwind, unwind, 0.0, 0.0)
     spin_unwinding = vector4(0.0, 0.0, unwind, 0.0)
     orbital, spinning, spread = nothing, nothing, nothing
-    energy = 0.0
+    energy, before = 0.0, 0.0
     fastest = 0.0
     for k in range(state.counter[MONOMERS]):
         r = np.uint64(k) * _ROW
@@ -225,23 +227,38 @@ def kick_and_drift(state, kick, dt, unwind, keep):
         x = load4(monomer, r + X)
         across = swap4(x)
         v = add4(load4(monomer, r + VX), scale4(kick * monomer[r + INV_MASS], load4(force, q + FORCE_X)))
+        square = square4(v)
         v = add4(multiply4(braked, v), scale4(driven, multiply4(unwinding, across)))
         w = add4(load4(monomer, r + WX), scale4(kick * monomer[r + INV_INERTIA], load4(force, q + TORQUE_X)))
+        m, own = driven * monomer[r + MASS], driven * monomer[r + INERTIA]
+        before += 0.5 * (m * square + own * square4(w))
         w = add4(multiply4(braked, w), scale4(driven, spin_unwinding))
         store4(monomer, r + X, add4(x, scale4(dt, v)))
         store4(monomer, r + VX, v)
         store4(monomer, r + WX, w)
         store4(force, q + FORCE_X, nothing)
         store4(force, q + TORQUE_X, nothing)
-        m = driven * monomer[r + MASS]
         weighed = scale4(m, across)
         orbital = add4(orbital, multiply4(weighed, v))
         spread = add4(spread, multiply4(weighed, across))
-        own = driven * monomer[r + INERTIA]
         spinning = add4(spinning, scale4(own, w))
         square = square4(v)
         energy += 0.5 * (m * square + own * square4(w))
         fastest = max(fastest, square)
     backward, forward, _, _ = numbers4(orbital)
     across_x, across_y, _, _ = numbers4(spread)
-    return forward - backward + numbers4(spinning)[2], across_x + across_y, energy, math.sqrt(fastest)
+    return forward - backward + numbers4(spinning)[2], across_x + across_y, energy, before, math.sqrt(fastest)
+
+
+@jit
+def leave_behind(state, risen):
+    """Keep all but the largest fragment as they move in space while the frame turns faster by so much [rad/s].
+
+    Under a torque the omega of the frame is that of the largest fragment, and jumps when the grain comes apart.
+    """
+    for k in range(state.counter[MONOMERS]):
+        r = np.uint64(k) * _ROW
+        if state.monomer[r + DRIVEN] == 0.0:
+            state.monomer[r + VX] += risen * state.monomer[r + Y]
+            state.monomer[r + VY] -= risen * state.monomer[r + X]
+            state.monomer[r + WZ] -= risen

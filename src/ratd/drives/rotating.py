@@ -15,8 +15,8 @@ from ratd.base.parts import part
 from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
 from ratd.engine.fragments import drop, label_fragments, note_lost
 from ratd.engine.layout import (
-    CLOCK, DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW, STEPS,
-    TIME, TORQUE_X, VX, VY, VZ, WX, X, Y, Z,
+    CLOCK, DRIVEN, DT_DRIFT, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, RADIUS, ROW,
+    STEPS, TIME, TORQUE_X, VX, VY, VZ, WX, WY, WZ, X, Y, Z,
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
@@ -24,12 +24,14 @@ GREATEST = CLOCK
 """Of `state.drive`: the greatest angular velocity so far [rad/s]."""
 (
     ACCELERATION, UNWIND, EXCESS, TORQUE_WORK, STRESS_SUM, STRESS_SAMPLES, FRAGMENTS, OWN_INERTIA, OMEGA,
-    ANGULAR_MOMENTUM, UNREST,
-) = range(1, 12)  # fmt: skip
+    ANGULAR_MOMENTUM, UNREST, DRAGGED, CARRIED,
+) = range(1, 14)  # fmt: skip
 """... d omega/dt [rad/s2]; what the torque turns the largest fragment back by, and how much it turned after the last
 step [rad/s]; work of the torque [J]; sum and number of the samples of the total stress; number of fragments; of the
 largest one the moments of inertia of its monomers about their own centres, added up [kg m2]; angular velocity of the
-frame [rad/s]; angular momentum of the largest fragment [kg m2/s]; its unrest (see `ratd.drives.quasi_static`)."""
+frame [rad/s]; angular momentum of the largest fragment [kg m2/s]; its unrest, and energy that the drag has taken from
+it [J] (see `ratd.drives.quasi_static`); kinetic energy that went with fragments that were dropped, and with the motion
+of the origin [J]."""
 
 CENTRE_EVERY = 4096
 """Steps after which the origin is put back to the centre of mass.
@@ -115,8 +117,7 @@ class Rotating(NamedTuple):
         )
         inertia += drive[OWN_INERTIA]
         if self.torque:
-            # Power of the body force m alpha x X: alpha times the angular momentum in the inertial frame.
-            drive[TORQUE_WORK] += (domega * kick + unwind) * (inertia * omega + momentum)
+            drive[TORQUE_WORK] += work_of_torque(inertia, omega, momentum, unwind, domega * kick)
             excess = momentum / inertia
             drive[UNWIND] = turn_to_take_out(excess, drive[EXCESS], unwind)
             drive[EXCESS] = excess
@@ -334,6 +335,24 @@ def turn_to_take_out(excess, last_excess, last_unwind):
 
 
 @jit
+def work_of_torque(inertia, omega, momentum, unwind, risen):
+    """Work [J] of the outer torque in a step: two rigid rotations, by `unwind` and then by `risen`.
+
+    Parameters
+    ----------
+    inertia : float
+        Of the fragment about the axis [kg m2].
+    omega : float
+        Angular velocity of the frame before the step [rad/s].
+    momentum : float
+        Angular momentum in it after the first [kg m2/s].
+    unwind, risen : float
+        What the torque adds to the velocities in the frame, and what omega rises by [rad/s].
+    """
+    return (unwind + risen) * (inertia * omega + momentum) + 0.5 * inertia * (risen * risen - unwind * unwind)
+
+
+@jit
 def follow_largest(state, changed):
     """Find the largest fragment and what is known of it; `changed` where contacts have come or gone."""
     state.drive[FRAGMENTS] = label_fragments(state)
@@ -367,10 +386,11 @@ def centre(state):
     """Mark the largest fragment as driven, and move the origin to its centre of mass.
 
     The origin takes the centre's velocity as well, which is an inertial motion, so that the terms of the turning
-    frame keep their form.
+    frame keep their form. The energy of that motion is `CARRIED` off.
     """
     n = state.counter[MONOMERS]
     monomer = state.monomer
+    state.drive[CARRIED] += energy_of_motion(state)
     mass = 0.0
     sums = np.zeros(6)
     for k in range(n):
@@ -396,6 +416,31 @@ def centre(state):
         monomer[r + VX] -= sums[3]
         monomer[r + VY] -= sums[4]
         monomer[r + VZ] -= sums[5]
+    state.drive[CARRIED] -= energy_of_motion(state)
+
+
+@jit
+def energy_of_motion(state):
+    """Of all monomers in the inertial frame, centres and spins [J].
+
+    Velocities stand half a step behind the positions. That matters where a fragment flies off, and is made up for in
+    those but the largest, which only the forces of the turning frame act on.
+    """
+    omega, half = state.drive[OMEGA], 0.5 * state.scalar[DT_DRIFT]
+    energy = 0.0
+    for k in range(state.counter[MONOMERS]):
+        r = np.uint64(k) * _ROW
+        x, y = state.monomer[r + X], state.monomer[r + Y]
+        vx, vy, vz = state.monomer[r + VX], state.monomer[r + VY], state.monomer[r + VZ]
+        wx, wy, wz = state.monomer[r + WX], state.monomer[r + WY], state.monomer[r + WZ]
+        if state.fragment[k] != 0:
+            turn = omega * half
+            vx, vy = vx + turn * (omega * x + 2.0 * vy), vy + turn * (omega * y - 2.0 * vx)
+            wx, wy = wx + turn * wy, wy - turn * wx
+        vx, vy, wz = vx - omega * y, vy + omega * x, wz + omega
+        energy += 0.5 * state.monomer[r + MASS] * (vx * vx + vy * vy + vz * vz)
+        energy += 0.5 * state.monomer[r + INERTIA] * (wx * wx + wy * wy + wz * wz)
+    return energy
 
 
 @jit
@@ -452,5 +497,7 @@ def drop_departed(state, law):
     if dropped == 0:
         return 0
 
+    state.drive[CARRIED] += energy_of_motion(state)
     drop(state, law, gone)
+    state.drive[CARRIED] -= energy_of_motion(state)
     return dropped

@@ -67,7 +67,10 @@ class Leapfrog(NamedTuple):
         state.counter[STEPS] += 1
         return ended
 
-    def limit(self, state, law, drive, least, work):
+    def farthest(self):
+        return 0.0
+
+    def limit(self, state, law, drive, box, far, least, work):
         if self.timestep == 0.0:
             limit_step(state, self.timestep_factor * least)
 

@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.engine.contacts import gap, get_image
-from ratd.engine.layout import CONTACTS, MONOMERS, RADIUS, ROW, X, Y, Z
+from ratd.engine.contacts import difference, gap, get_image
+from ratd.engine.layout import CONTACTS, MONOMERS, RADIUS, ROW, VX, VY, VZ, X, Y, Z
 
 FAR, NEAR = 0.2, 0.02
 """Reach of the two lists, in mean monomer radii."""
@@ -156,6 +156,27 @@ def count_touching(state, box, near, count):
     for p in range(count):
         found += gap(state, edges, near[p, 0], near[p, 1], (near[p, 2], near[p, 3], near[p, 4])) <= 0.0
     return found
+
+
+@jit
+def time_to_overlap(state, box, far, overlap):
+    """Shortest time [s] in which a pair of the far list, now apart, comes to overlap by `overlap` [m] as it moves."""
+    edges = box.edges(state.scalar)
+    hx, hy, hz = box.rates()
+    monomer = state.monomer
+    soonest = np.inf
+    for p in range(far.shape[0]):
+        i, j = far[p, 0], far[p, 1]
+        dx, dy, dz, distance = difference(state, edges, i, j, (far[p, 2], far[p, 3], far[p, 4]))
+        ri, rj = np.uint64(i) * _ROW, np.uint64(j) * _ROW
+        apart = distance - monomer[ri + RADIUS] - monomer[rj + RADIUS]
+        vx = monomer[ri + VX] - monomer[rj + VX] + hx * dx
+        vy = monomer[ri + VY] - monomer[rj + VY] + hy * dy
+        vz = monomer[ri + VZ] - monomer[rj + VZ] + hz * dz
+        closing = -(vx * dx + vy * dy + vz * dz)
+        if apart > 0.0 and closing > 0.0:
+            soonest = min(soonest, (apart + overlap) * distance / closing)
+    return soonest
 
 
 @jit

@@ -22,6 +22,7 @@ from ratd.engine.layout import (
     STRETCH, TIME, TORQUE_X, VX, WX,
 )  # fmt: skip
 from ratd.engine.leapfrog import SAMPLE_EVERY
+from ratd.engine.lists import time_to_overlap
 from ratd.laws.contact_fields import NCX, NCY, NCZ
 
 RUNG = math.sqrt(0.5)
@@ -129,13 +130,18 @@ class SemiImplicit(NamedTuple):
         counter[STEPS] += 1
         return ended
 
-    def limit(self, state, law, drive, least, work):
+    def farthest(self):
+        return self.travel
+
+    def limit(self, state, law, drive, box, far, least, work):
         scalar = state.scalar
         greatest, turning, stretching = contact_speeds(state, law)
         work.made[1] += turning * scalar[DT_DRIFT]
         scalar[STRETCH] = stretching * scalar[DT_DRIFT]
         speed = max(greatest / self.displacement, scalar[FASTEST] / self.travel)
         allowed = min(self.longest, drive.longest_step(state))
+        # what lands must not do so with an overlap that no force has worked for
+        allowed = min(allowed, time_to_overlap(state, box, far, self.displacement))
         if speed > 0.0:
             allowed = min(allowed, 1.0 / speed)
         work.count[0] += 1

@@ -82,8 +82,9 @@ def advance(state, law, drive, box, integrator, until):
     counter = state.counter
     scratch = working_space()
     mean, least, greatest = mean_radius(state)
-    far_reach = FAR * mean
-    near_reach = NEAR * mean
+    # in a long step two monomers may come from beyond what a short one reaches
+    far_reach = FAR * mean + 2.0 * integrator.farthest()
+    near_reach = NEAR * mean + 2.0 * integrator.farthest()
     turning = drive.turning()
 
     far_reference, radius = positions(state)
@@ -153,7 +154,7 @@ def advance(state, law, drive, box, integrator, until):
                 if gone > 0:
                     _take_note(state, law, drive, integrator)
                     work = integrator.renew(state, law, work)
-        integrator.limit(state, law, drive, least, work)
+        integrator.limit(state, law, drive, box, far, least, work)
 
 
 @jit

@@ -181,11 +181,13 @@ class Checks:
         }  # fmt: skip
 
     def _energy(self, own):
-        shared = {"material": own["material"], "a_eff": own["size_nm"] * NM}
         return {
-            f"{kind}_{seed}": shared | self._production(kind) | {"type": kind, "seed": seed}
-            for kind, seed in product(own["types"], range(own["seeds"]))
-        }
+            f"{way}_{material}_{kind}_{size}nm": {
+                "material": material, "type": kind, "a_eff": size * NM, "seeds": grains["seeds"],
+            } | (self._production(kind) if way == "paced" else {})
+            for way, grains in own.items()
+            for material, kind, size in product(grains["materials"], grains["types"], grains["sizes_nm"])
+        }  # fmt: skip
 
     def _free_grain(self, own):
         shared = {key: value for key, value in own.items() if key not in ("types", "size_nm", "seeds")}

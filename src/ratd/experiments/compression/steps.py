@@ -11,6 +11,10 @@ from ratd.laws.contact_constants import equilibrium_compression
 
 __all__ = ["LongSteps", "integrators"]
 
+ROLLED = 2 / 3
+"""Part of the critical rolling displacement by which a contact may roll in a long step at most, so that none rolls past
+its limit from rest."""
+
 
 class LongSteps(NamedTuple):
     """Long steps with the semi-implicit integrator, up to some filling factor.
@@ -21,7 +25,8 @@ class LongSteps(NamedTuple):
         The longest step over t_0.
     displacement : float
         How far a monomer may move in a step against the box, and against one in contact, over the equilibrium
-        compression delta_0 of two. Monomers that move farther meet with an overlap that costs work.
+        compression delta_0 of two. Monomers that move farther meet with an overlap that costs work. Where the critical
+        rolling displacement is small it allows less, see `ROLLED`.
     calming : float
         See `ratd.engine.semi_implicit.semi_implicit`.
     until_phi : float
@@ -68,7 +73,7 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
         if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
     natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
-    displacement = long_steps.displacement * natural
+    displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
     longest = long_steps.longest * time_unit
     how = {"displacement": displacement, "travel": displacement, "calming": long_steps.calming}
     return semi_implicit(longest=longest, **how), explicit

@@ -5,7 +5,10 @@ import time
 import numpy as np
 import xarray as xr
 
-from ratd.drives.rotating import ANGULAR_MOMENTUM, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK
+from ratd.drives.rotating import (
+    ANGULAR_MOMENTUM, CARRIED, DRAGGED, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK,
+    energy_of_motion,
+)  # fmt: skip
 from ratd.engine.fragments import note_lost
 from ratd.engine.layout import (
     DT, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, STEPS, TIME, X,
@@ -35,9 +38,14 @@ RECORDS = {
     "dissipated_twisting": ("J", "energy dissipated by twisting so far", "f8"),
     "dissipated_damping": ("J", "energy dissipated by viscoelastic damping so far", "f8"),
     "dissipated_contact": ("J", "energy dissipated by making and breaking contacts so far", "f8"),
+    "dissipated_drag": ("J", "energy taken by the drag in the turning frame so far", "f8"),
     "torque_work": ("J", "work done by the outer torque so far", "f8"),
     "kinetic_energy": ("J", "kinetic energy of the largest fragment in the inertial frame", "f8"),
     "potential_energy": ("J", "potential energy of the contacts of the largest fragment", "f8"),
+    "energy_residual": (
+        "J", "kinetic, stored and dissipated energy and what fragments carry off, less the work of the torque and the "
+        "same at the start; NaN without a torque", "f8",
+    ),
     "n_fragments_lost": ("1", "number of fragments lost so far", "i4"),
     "frame_omega": ("rad s-1", "angular velocity, which falls where a torque turns a grain that stretches", "f8"),
     "angular_momentum": ("kg m2 s-1", "angular momentum of the largest fragment about the axis", "f8"),
@@ -67,7 +75,10 @@ def edge_of_record(number, bound, records):
 
 
 def record(state, law, density):
-    """One row of the records, in the order of `RECORDS`, and the step at the end; starts a new recording interval."""
+    """One row of the records, in the order of `RECORDS`, and the step at the end; starts a new recording interval.
+
+    In the place of ``energy_residual`` stands the sum of energies, from which `dataset` takes that at the start.
+    """
     scalar, drive = state.scalar, state.drive
     if drive[STRESS_SAMPLES] > 0:
         stress = drive[STRESS_SUM] / drive[STRESS_SAMPLES]
@@ -75,15 +86,17 @@ def record(state, law, density):
         stress = total_stress(state, law)
     drive[STRESS_SUM] = drive[STRESS_SAMPLES] = 0.0
     mass, a, b, c, porosity = fragment_shape(state, density)
-    damping, sliding, rolling, twisting, made, broken = dissipated(state, law).tolist()
+    damping, sliding, rolling, twisting, made, broken = lost = dissipated(state, law).tolist()
+    total = energy_of_motion(state) + stored(state, law, False).sum() + sum(lost)
+    total += drive[DRAGGED] + drive[CARRIED] - drive[TORQUE_WORK]
     counter = state.counter
     return [
         float(drive[GREATEST]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
         float(counter[LARGEST_CONTACTS]), stress, a, b, c, porosity,
-        sliding, rolling, twisting, damping, made + broken,
+        sliding, rolling, twisting, damping, made + broken, float(drive[DRAGGED]),
         float(drive[TORQUE_WORK]), sum(kinetic(state, drive[OMEGA], True)), stored(state, law, True).sum(),
-        float(counter[FRAGMENTS_LOST]), float(drive[OMEGA]), float(drive[ANGULAR_MOMENTUM]), float(counter[STEPS]),
-        float(scalar[DT]),
+        float(total), float(counter[FRAGMENTS_LOST]), float(drive[OMEGA]), float(drive[ANGULAR_MOMENTUM]),
+        float(counter[STEPS]), float(scalar[DT]),
     ]  # fmt: skip
 
 
@@ -101,6 +114,8 @@ def snapshot(state, law):
 
 def dataset(state, rows, snapshots, grain):
     table = np.array(rows)
+    total = table[:, list(RECORDS).index("energy_residual")]
+    total -= total[0].copy()
     variables = {
         name: ("record", table[:, column].astype(dtype), {"units": units, "long_name": meaning})
         for column, (name, (units, meaning, dtype)) in enumerate(RECORDS.items())
