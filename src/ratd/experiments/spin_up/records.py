@@ -74,10 +74,18 @@ def edge_of_record(number, bound, records):
     return 2.0**octave * bound * (number - octave * records) / (2 * records)
 
 
+def sum_of_energies(state, law):
+    """What a spin-up keeps [J]: kinetic, stored and dissipated energy, with what the drag has taken and what fragments
+    have carried off, less the work of the torque."""
+    drive = state.drive
+    held = energy_of_motion(state) + stored(state, law, False).sum() + dissipated(state, law).sum()
+    return float(held + drive[DRAGGED] + drive[CARRIED] - drive[TORQUE_WORK])
+
+
 def record(state, law, density):
     """One row of the records, in the order of `RECORDS`, and the step at the end; starts a new recording interval.
 
-    In the place of ``energy_residual`` stands the sum of energies, from which `dataset` takes that at the start.
+    In the place of ``energy_residual`` stands `sum_of_energies`, from which `dataset` takes that at the start.
     """
     scalar, drive = state.scalar, state.drive
     if drive[STRESS_SAMPLES] > 0:
@@ -86,17 +94,15 @@ def record(state, law, density):
         stress = total_stress(state, law)
     drive[STRESS_SUM] = drive[STRESS_SAMPLES] = 0.0
     mass, a, b, c, porosity = fragment_shape(state, density)
-    damping, sliding, rolling, twisting, made, broken = lost = dissipated(state, law).tolist()
-    total = energy_of_motion(state) + stored(state, law, False).sum() + sum(lost)
-    total += drive[DRAGGED] + drive[CARRIED] - drive[TORQUE_WORK]
+    damping, sliding, rolling, twisting, made, broken = dissipated(state, law).tolist()
     counter = state.counter
     return [
         float(drive[GREATEST]), float(scalar[TIME]), mass, float(counter[LARGEST_MONOMERS]),
         float(counter[LARGEST_CONTACTS]), stress, a, b, c, porosity,
         sliding, rolling, twisting, damping, made + broken, float(drive[DRAGGED]),
         float(drive[TORQUE_WORK]), sum(kinetic(state, drive[OMEGA], True)), stored(state, law, True).sum(),
-        float(total), float(counter[FRAGMENTS_LOST]), float(drive[OMEGA]), float(drive[ANGULAR_MOMENTUM]),
-        float(counter[STEPS]), float(scalar[DT]),
+        sum_of_energies(state, law), float(counter[FRAGMENTS_LOST]), float(drive[OMEGA]),
+        float(drive[ANGULAR_MOMENTUM]), float(counter[STEPS]), float(scalar[DT]),
     ]  # fmt: skip
 
 
