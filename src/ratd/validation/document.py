@@ -28,7 +28,7 @@ TEMPLATE = Path("docs/templates/validation.md")
 DOCUMENT = Path("docs/validation.md")
 CHECKS = (
     "pull_off", "lammps", "forces", "frames", "energy_step", "energy", "relaxation", "growth", "theory", "damping",
-    "literal",
+    "literal", "compression",
 )  # fmt: skip
 """One file each, with a row a case."""
 MADE = ("settings_hash", "code_hash", "versions")

@@ -9,6 +9,7 @@ from scipy.stats import kstest
 
 from ratd.base.measured import median
 from ratd.base.statistics import median_of
+from ratd.experiments.compression.findings import of_lammps
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -22,6 +23,7 @@ __all__ = [
     "limits",
     "migrations",
     "of_balance",
+    "of_compression",
     "of_damping",
     "of_energy",
     "of_energy_step",
@@ -50,6 +52,8 @@ REFERENCE = 2e-3
 """Distance from the spheres of the reference over their way; the same of energies."""
 KEPT = 1e-3
 """Error of the energy over the kinetic energy, at `TIMESTEP_FACTOR`."""
+CONTACTS = 0.1
+"""What the number of contacts in LAMMPS may differ by in a compression, in the mean of its clusters."""
 CLOSED = {"compression": 5e-3, "long steps": 5e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
 SHIFTED = 0.01
@@ -66,6 +70,7 @@ def limits():
     found = {
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
+        "contacts": CONTACTS,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
@@ -209,6 +214,13 @@ def of_energy(table):
             f"energy.{name} verdict": _verdict(gap.max() < CLOSED[name]),
         }
     return values
+
+
+def of_compression(table):
+    """Compression beside LAMMPS, see `ratd.experiments.compression.findings.of_lammps`."""
+    found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
+    within = all(abs(found[f"compression.n_contacts_{part}"].value - 1.0) < CONTACTS for part in ("low", "high"))
+    return found | {"compression.verdict": _verdict(within)}
 
 
 def of_balance(table):
