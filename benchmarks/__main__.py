@@ -5,7 +5,7 @@ import sys
 from contextlib import nullcontext
 from pathlib import Path
 
-from benchmarks import agreement, answer, cost, kernel, machine, peer, pipeline, profile, report, scaling
+from benchmarks import agreement, answer, compression, cost, kernel, machine, peer, pipeline, profile, report, scaling
 from benchmarks.before import Before
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
@@ -16,7 +16,7 @@ from ratd.validation import peer_lammps
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("profile", "agreement", "answer")
+ON_REQUEST = ("profile", "agreement", "answer", "compression")
 """Parts that are done only when they are named."""
 
 PROFILED = ("150", "300")
@@ -193,6 +193,12 @@ def _answer(arguments, out, about):
     answer.measure(out, size=size, repeats=repeats, about=about, say=say)
 
 
+def _compression(arguments, out, about):
+    peer_lammps.load()
+    numbers, steps = ((64,), 400) if arguments.quick else ((1024, 16384), 2 * arguments.steps)
+    compression.measure(out, numbers=numbers, steps=steps, about=about, say=say)
+
+
 def _agreement(arguments, out, about):
     agreement.main(arguments.before, 3 if arguments.quick else arguments.grains, ROOT, say)
 
@@ -205,6 +211,7 @@ _MEASURE = {
     "profile": _profile,
     "agreement": _agreement,
     "answer": _answer,
+    "compression": _compression,
 }
 
 

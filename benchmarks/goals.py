@@ -92,6 +92,20 @@ def goals(out):
         found.append(
             Goal("LAMMPS over ratd, time to omega at 25 % mass loss, least type", "times", least, 300.0, False)
         )
+    squeezed = frame(out, "compression")
+    if squeezed is not None:
+        largest = squeezed[squeezed["monomers"] == squeezed["monomers"].max()].set_index("code")
+        own, other, long = (largest.loc[code] for code in ("ratd, explicit", "LAMMPS", "ratd, long steps"))
+        what = f"compression of {own['monomers']} monomers"
+        found += [
+            Goal(f"{what}, explicit", "ns per contact and step", own["ns_per_contact_step"], 20.0, True),
+            Goal(
+                f"{what}, LAMMPS over ratd, step by step", "times",
+                other["ns_per_contact_step"] / own["ns_per_contact_step"], 10.0, False,
+            ),
+            Goal(f"{what}, LAMMPS over ratd, with long steps", "times", other["hours"] / long["hours"], 100.0, False),
+            Goal(f"growth of a cluster of {own['monomers']}", "s", own["growth_seconds"], 2.0, True),
+        ]  # fmt: skip
     if overhead is not None:
         share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
         largest = overhead["size_nm"].max()

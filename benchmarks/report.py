@@ -25,7 +25,10 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [section(out) for section in (_goals_section, _kernel, _answer, _cost, _profile, _scaling, _pipeline)]
+    parts += [
+        section(out)
+        for section in (_goals_section, _kernel, _answer, _compression, _cost, _profile, _scaling, _pipeline)
+    ]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -235,6 +238,24 @@ def _answer(out):
     )
     head = ["type", "code", "epsilon", "omega [rad/s]", "against ratd", "seconds", "LAMMPS over ratd"]
     return "\n".join(["## Time to an answer\n", _where(data), about, table(head, rows)])
+
+
+def _compression(out):
+    data = frame(out, "compression")
+    if data is None:
+        return ""
+    rows = [
+        [f"{row.monomers}", row.code, f"{row.ns_per_contact_step:.1f}", f"{row.steps:.2e}", f"{row.hours:.2g}"]
+        for row in data.itertuples()
+    ]
+    about = (
+        f"A cluster of ice in a box that shrinks with C_v = {data['strain_rate'].iloc[0]:.0e}, from where it just fits "
+        f"to a filling factor of {data['until_phi'].iloc[0]:g}. Explicit steps are 0.2 t0, those of LAMMPS 0.1 t0; the "
+        "hours of both are projected from a part of the run, those with long steps measured. The pressures agree: "
+        "docs/compression.md.\n"
+    )
+    head = ["monomers", "code", "ns per contact and step", "steps", "hours"]
+    return "\n".join(["## Compression\n", _where(data), about, table(head, rows)])
 
 
 def _profile(out):

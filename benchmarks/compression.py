@@ -1,0 +1,96 @@
+"""On request: the compression beside LAMMPS, in the same box that shrinks.
+
+Clusters of ice are squeezed from where they just fit into their box. With explicit steps both codes do the same work,
+and the time of a step and contact counts, everything included that a run does: in ratd its records and lists, in LAMMPS
+the mean pressure. Then the time to `UNTIL`, with long steps, explicit ones and LAMMPS. Those of explicit steps and of
+LAMMPS are projected: their number of steps is known, and each costs at least what it costs at the start.
+"""
+
+import math
+import time
+
+from benchmarks import tables
+from ratd import compress, grow_bcca
+from ratd.validation.compression import WINDOW, in_lammps
+
+FACTOR, LAMMPS_STEP = 0.14, 0.1
+"""f of the explicit step of ratd, which is 0.2 t_0; step of LAMMPS over t_0, where the damping is explicit."""
+STRAIN_RATE = 3e-7
+"""C_v, that of the paper."""
+UNTIL = 0.06
+
+
+def measure(out, *, numbers, steps, about, say):
+    """Measure and write ``compression.csv``.
+
+    Parameters
+    ----------
+    out : pathlib.Path
+        Folder of the results.
+    numbers : sequence of int
+        Monomers of the clusters, powers of 2.
+    steps : int
+        Explicit steps of ratd; LAMMPS makes a twentieth.
+    about : dict
+        Columns that each row gets: the machine and the versions.
+    say : callable
+        Told how far it is.
+    """
+    rows = []
+    for n in numbers:
+        grow_bcca(n, "ice", 0)  # compiles
+        begun = time.perf_counter()
+        cluster = grow_bcca(n, "ice", 0)
+        growth = time.perf_counter() - begun
+        # compiles, and says where it begins
+        start = compress(cluster, 1e-3, 0.03, long_steps=None, balance=False)
+        first, unit = start.attrs["phi_start"], start.attrs["time_unit"]
+        for code, done in (
+            ("ratd, explicit", _explicit(cluster, steps, first)),
+            ("LAMMPS", _lammps(cluster, max(2 * WINDOW, steps // 20), first, unit)),
+            ("ratd, long steps", _long(cluster)),
+        ):
+            seconds, made, contacts, dt = done
+            whole = seconds
+            if dt is not None:
+                made, part = round(math.log(UNTIL / first) / (6.0 * STRAIN_RATE) * unit / dt), made
+                whole = seconds * made / part
+                ns = 1e9 * seconds / part / contacts
+            else:
+                ns = 1e9 * seconds / made / contacts
+            own = {"monomers": n, "code": code, "ns_per_contact_step": ns, "steps": made, "hours": whole / 3600.0}
+            rows.append(own | {"growth_seconds": growth, "strain_rate": STRAIN_RATE, "until_phi": UNTIL} | about)
+            say(f"compression: {n} monomers, {code}: {whole / 3600.0:.2f} h, {ns:.1f} ns per contact and step")
+    tables.write(out / "compression.csv", rows)
+
+
+def _explicit(cluster, steps, first):
+    """Seconds, steps, contacts, and the step [s] of a part of the run."""
+    until = first * math.exp(6.0 * STRAIN_RATE * 0.2 * steps)
+    begun = time.perf_counter()
+    run = compress(cluster, STRAIN_RATE, until, long_steps=None, timestep_factor=FACTOR)
+    seconds = time.perf_counter() - begun
+    return seconds, run.attrs["steps"], int(run["n_contacts"].values[-1]), run.attrs["timestep"]
+
+
+def _lammps(cluster, steps, first, unit):
+    """The same of LAMMPS."""
+    dt = LAMMPS_STEP * unit
+    # the first part sets everything up
+    edges = [first * math.exp(6.0 * STRAIN_RATE * LAMMPS_STEP * done) for done in (0, WINDOW, WINDOW + steps)]
+    length = (4.0 / 3.0 * math.pi * float((cluster.radius**3).sum()) / first) ** (1.0 / 3.0)
+    parts = in_lammps(cluster, length, STRAIN_RATE, edges, dt)
+    next(parts)
+    begun = time.perf_counter()
+    _, _, contacts = next(parts)
+    seconds = time.perf_counter() - begun
+    parts.close()
+    return seconds, round(steps / WINDOW) * WINDOW, contacts, dt
+
+
+def _long(cluster):
+    """Seconds, steps and contacts of the whole run."""
+    begun = time.perf_counter()
+    run = compress(cluster, STRAIN_RATE, UNTIL)
+    seconds = time.perf_counter() - begun
+    return seconds, int(run.attrs["steps"]), int(run["n_contacts"].values[-1]), None
