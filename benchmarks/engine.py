@@ -4,7 +4,8 @@ import time
 from typing import NamedTuple
 
 from ratd.drives.free import Free, free
-from ratd.drives.rotating import OMEGA, Rotating, rotating
+from ratd.drives.largest import OMEGA
+from ratd.drives.rotating import Rotating, rotating
 from ratd.drives.squeezing import Squeezing, squeezing
 from ratd.engine.layout import CONTACTS, DT, STEPS, TIME
 from ratd.engine.leapfrog import leapfrog

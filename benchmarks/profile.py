@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks import tables
 from benchmarks.cost import arguments_of, grain_of
 from ratd import spin_up
-from ratd.drives.rotating import OMEGA, UNREST
+from ratd.drives.largest import OMEGA, UNREST
 from ratd.engine.layout import LARGEST_CONTACTS, STEPS, STRETCH
 from ratd.engine.step import FEW_CONTACTS, until
 from ratd.engine.step import run as go_on

@@ -7,7 +7,8 @@ import pytest
 
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free
-from ratd.drives.rotating import ACCELERATION, OMEGA, OMEGA_RAT, TORQUE_WORK, rotating
+from ratd.drives.largest import ACCELERATION, OMEGA, TORQUE_WORK
+from ratd.drives.rotating import OMEGA_RAT, rotating
 from ratd.engine.contacts import remove_contact
 from ratd.engine.fragments import label_fragments
 from ratd.engine.layout import (

@@ -9,8 +9,8 @@ import xarray as xr
 import ratd
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
+from ratd.drives.largest import GREATEST, OMEGA, UNREST
 from ratd.drives.quasi_static import quasi_static, rise
-from ratd.drives.rotating import GREATEST, OMEGA, UNREST
 from ratd.engine.layout import DT, VX
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit

@@ -15,10 +15,11 @@ from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.base.vectors import add4, load4, multiply4, numbers4, scale4, square4, store4, swap4, vector4
-from ratd.drives.rotating import (
-    ANGULAR_MOMENTUM, DRAGGED, EXCESS, GREATEST, OMEGA, OWN_INERTIA, SOFT_START, TORQUE_WORK, UNREST, UNWIND, centre,
+from ratd.drives.largest import (
+    ANGULAR_MOMENTUM, DRAGGED, EXCESS, GREATEST, OMEGA, OWN_INERTIA, TORQUE_WORK, UNREST, UNWIND, centre,
     drop_departed, follow_largest, sample_stress, turn_to_take_out, work_of_torque,
 )  # fmt: skip
+from ratd.drives.rotating import SOFT_START
 from ratd.engine.layout import (
     DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STRETCH, TORQUE_X, VX,
     VY, WX, WZ, X, Y,

@@ -17,7 +17,7 @@ import numpy as np
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.drives.free import free
-from ratd.drives.rotating import centre
+from ratd.drives.largest import centre
 from ratd.engine.fragments import contact_pairs, label_fragments
 from ratd.engine.layout import DT, INERTIA, MASS, RADIUS, TIME, VX, VY, WZ, X, Y
 from ratd.engine.leapfrog import leapfrog

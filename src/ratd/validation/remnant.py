@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.growth import grow
-from ratd.drives.rotating import OMEGA
+from ratd.drives.largest import OMEGA
 from ratd.engine.layout import DRIVEN, MASS, RADIUS, STEPS, TIME, X
 from ratd.engine.state import monomer_rows
 from ratd.engine.step import FEW_CONTACTS, until

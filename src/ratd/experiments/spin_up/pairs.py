@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.materials import Material
-from ratd.drives.rotating import OMEGA, rotating
+from ratd.drives.largest import OMEGA
+from ratd.drives.rotating import rotating
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.engine.step import FEW_CONTACTS, run, until

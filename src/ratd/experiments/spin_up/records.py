@@ -5,9 +5,8 @@ import time
 import numpy as np
 import xarray as xr
 
-from ratd.drives.rotating import (
-    ANGULAR_MOMENTUM, CARRIED, DRAGGED, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK,
-    energy_of_motion,
+from ratd.drives.largest import (
+    ANGULAR_MOMENTUM, CARRIED, DRAGGED, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK, energy_of_motion,
 )  # fmt: skip
 from ratd.engine.fragments import note_lost
 from ratd.engine.layout import (

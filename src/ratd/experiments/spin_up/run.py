@@ -7,7 +7,8 @@ import numpy as np
 
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
-from ratd.drives.rotating import OMEGA, OMEGA_RAT, TORQUE_WORK
+from ratd.drives.largest import OMEGA, TORQUE_WORK
+from ratd.drives.rotating import OMEGA_RAT
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, STEPS
