@@ -17,7 +17,7 @@ FACTOR, LAMMPS_STEP = 0.14, 0.1
 """f of the explicit step of ratd, which is 0.2 t_0; step of LAMMPS over t_0, where the damping is explicit."""
 STRAIN_RATE = 3e-7
 """C_v, that of the paper."""
-UNTIL = 0.06
+UNTIL = 0.03
 
 
 def measure(out, *, numbers, steps, about, say):
