@@ -6,6 +6,7 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
+from ratd.engine import checkpoint as checkpoints
 from ratd.experiments import evolve as module
 from ratd.experiments.evolve import RECORDS, evolve
 from ratd.geometry.box import periodic
@@ -135,7 +136,7 @@ def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypa
     # nor that of another source
     run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
     assert len(parts) < 20
-    monkeypatch.setattr(module, "source_hash", lambda **_: "of yesterday")
+    monkeypatch.setattr(checkpoints, "_source", lambda module: "of yesterday")
     before = len(parts)
     run(checkpoint=path, law=jkr(damping="constant"), progress=lambda done, *_: parts.append(done))
     assert len(parts) == before + 8

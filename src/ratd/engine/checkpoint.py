@@ -3,20 +3,41 @@
 import hashlib
 import os
 import zipfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ratd.engine.state import State, copied
+from ratd.pipeline.provenance import source_hash
 
 
-def fingerprint(arrays, *settings):
-    """What a checkpoint must have been made with to be of use: hash of arrays and of settings with a plain `repr`."""
-    digest = hashlib.sha256()
+def fingerprint(module, arrays, *settings):
+    """What a checkpoint must have been made with to be of use. What one source has begun no other goes on with.
+
+    Parameters
+    ----------
+    module : str
+        Name of the module that makes the run.
+    arrays : iterable of array
+    settings
+        With a plain `repr`.
+
+    Returns
+    -------
+    str
+        Hash of all of them, and of the source of the module and of those of ratd that it imports.
+    """
+    digest = hashlib.sha256(_source(module).encode())
     for array in arrays:
         digest.update(np.ascontiguousarray(array).tobytes())
     digest.update(repr(settings).encode())
     return digest.hexdigest()
+
+
+@cache
+def _source(module):
+    return source_hash(modules=[module])
 
 
 def save(path, key, state, **tables):

@@ -20,7 +20,6 @@ from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
-from ratd.pipeline.provenance import source_hash
 
 __all__ = ["columns", "evolve"]
 
@@ -148,9 +147,7 @@ def evolve(
     settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
-    # a run that one source has begun is not gone on with by another
-    source = None if checkpoint is None else source_hash(modules=[__name__])
-    key = checkpoints.fingerprint([array for array in inputs if array is not None], *settings, given, source)
+    key = checkpoints.fingerprint(__name__, [array for array in inputs if array is not None], *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])

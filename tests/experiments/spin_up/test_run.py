@@ -10,6 +10,7 @@ import xarray as xr
 import ratd
 from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
+from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import DT, VX
 from ratd.engine.state import contact_field, monomer_rows
 from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
@@ -205,6 +206,15 @@ def test_foreign_or_damaged_checkpoint_is_not_used(grain, tmp_path, monkeypatch)
     assert path.exists()
     other = spin_up(grain, epsilon=0.2, max_steps=3000, checkpoint=path)
     assert float(other.omega[-1]) < float(short.omega[-1])
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoints, "_source", lambda module: "of yesterday")
+        spin_up(grain, epsilon=0.3, max_steps=2000, checkpoint=path)
+    begun = []
+    with monkeypatch.context() as patch:
+        patch.setattr(spinup, "relax", lambda *a, **k: begun.append(path) or relax(*a, **k))
+        xr.testing.assert_identical(short, spin_up(grain, epsilon=0.3, max_steps=3000, checkpoint=path))
+        xr.testing.assert_identical(short, spin_up(grain, epsilon=0.3, max_steps=3000, checkpoint=path))
+    assert len(begun) == 1
     path.write_bytes(path.read_bytes()[:1000])
     again = spin_up(grain, epsilon=0.3, max_steps=3000, checkpoint=path)
     xr.testing.assert_identical(short, again)

@@ -193,7 +193,7 @@ def prepared(cluster, parts, settings):
     grain = cluster.grain
     pairs = touching_pairs(grain.position, grain.radius, parts.box)
     state = new_state(grain.position, grain.radius, grain.material, pairs, *parts)
-    return state, checkpoints.fingerprint([grain.position, grain.radius], grain.material, parts, settings)
+    return state, checkpoints.fingerprint(__name__, [grain.position, grain.radius], grain.material, parts, settings)
 
 
 def attributes(cluster):

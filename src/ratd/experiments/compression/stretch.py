@@ -96,7 +96,7 @@ def stretch(
     marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
 
     state = state_of(compressed)
-    key = checkpoints.fingerprint(list(state), parts)
+    key = checkpoints.fingerprint(__name__, list(state), parts)
     if checkpoints.load(checkpoint, key) is None:
         state = _at_rest(state, Parts(law, periodic(edges), integrator))
 

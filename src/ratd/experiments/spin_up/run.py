@@ -187,7 +187,7 @@ class Run:
         """What a checkpoint must have been made with to be of use."""
         grain = self.grain
         settings = (grain.material, self.law, self.motion, self.integrator, self.records, self.snapshot_every)
-        return checkpoints.fingerprint([grain.position, grain.radius], *settings)
+        return checkpoints.fingerprint(__name__, [grain.position, grain.radius], *settings)
 
     def begin(self, state):
         """Start from a relaxed state."""
