@@ -10,8 +10,9 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 
 __all__ = ["END_REASONS", "RUN_SETTINGS", "RUN_VALUES"]
 
-_NAN = ("axis_a", "axis_b", "axis_c", "porosity", "angular_momentum")
-"""Records that may be undefined: few monomers have no ellipsoid, and that of a new fragment is known a step later."""
+_NAN = ("axis_a", "axis_b", "axis_c", "porosity", "angular_momentum", "dissipated_drag", "energy_residual")
+"""Records that may be undefined: few monomers have no ellipsoid, the angular momentum of a new fragment is known a step
+later, without a torque there is no balance of energy, and runs of older sources have none."""
 
 END_REASONS = ("one contact left", "omega_RAT reached", "max_steps reached")
 """Why a spin-up ended; the flag in a file is the place in this list."""
