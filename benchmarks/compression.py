@@ -11,6 +11,7 @@ import time
 
 from benchmarks import tables
 from ratd import compress, grow_bcca
+from ratd.experiments.compression.run import Cluster
 from ratd.validation.compression import WINDOW, in_lammps
 
 FACTOR, LAMMPS_STEP = 0.14, 0.1
@@ -45,22 +46,18 @@ def measure(out, *, numbers, steps, about, say):
         # compiles, and says where it begins
         start = compress(cluster, 1e-3, 0.03, long_steps=None, balance=False)
         first, unit = start.attrs["phi_start"], start.attrs["time_unit"]
-        for code, done in (
+        for code, (seconds, made, contacts, dt) in (
             ("ratd, explicit", _explicit(cluster, steps, first)),
             ("LAMMPS", _lammps(cluster, max(2 * WINDOW, steps // 20), first, unit)),
             ("ratd, long steps", _long(cluster)),
         ):
-            seconds, made, contacts, dt = done
-            whole = seconds
+            ns = 1e9 * seconds / made / contacts
             if dt is not None:
-                made, part = round(math.log(UNTIL / first) / (6.0 * STRAIN_RATE) * unit / dt), made
-                whole = seconds * made / part
-                ns = 1e9 * seconds / part / contacts
-            else:
-                ns = 1e9 * seconds / made / contacts
-            own = {"monomers": n, "code": code, "ns_per_contact_step": ns, "steps": made, "hours": whole / 3600.0}
+                part, made = made, round(math.log(UNTIL / first) / (6.0 * STRAIN_RATE) * unit / dt)
+                seconds *= made / part
+            own = {"monomers": n, "code": code, "ns_per_contact_step": ns, "steps": made, "hours": seconds / 3600.0}
             rows.append(own | {"growth_seconds": growth, "strain_rate": STRAIN_RATE, "until_phi": UNTIL} | about)
-            say(f"compression: {n} monomers, {code}: {whole / 3600.0:.2f} h, {ns:.1f} ns per contact and step")
+            say(f"compression: {n} monomers, {code}: {seconds / 3600.0:.2f} h, {ns:.1f} ns per contact and step")
     tables.write(out / "compression.csv", rows)
 
 
@@ -78,7 +75,7 @@ def _lammps(cluster, steps, first, unit):
     dt = LAMMPS_STEP * unit
     # the first part sets everything up
     edges = [first * math.exp(6.0 * STRAIN_RATE * LAMMPS_STEP * done) for done in (0, WINDOW, WINDOW + steps)]
-    length = (4.0 / 3.0 * math.pi * float((cluster.radius**3).sum()) / first) ** (1.0 / 3.0)
+    length = (Cluster(cluster).volume / first) ** (1.0 / 3.0)
     parts = in_lammps(cluster, length, STRAIN_RATE, edges, dt)
     next(parts)
     begun = time.perf_counter()

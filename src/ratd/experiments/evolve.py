@@ -147,7 +147,8 @@ def evolve(
     settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
-    key = checkpoints.fingerprint(__name__, [array for array in inputs if array is not None], *settings, given)
+    arrays = [array for array in inputs if array is not None]
+    key = None if checkpoint is None else checkpoints.fingerprint(__name__, arrays, *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
         state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])

@@ -171,23 +171,16 @@ class Checks:
         return pieces | {"arrivals": {"material": own["material"], "arrivals": own["arrivals"]}}
 
     def _relaxation(self, own):
+        factor = self.config["production"]["timestep_factor"]
         return {
-            f"{way}_{material}_{kind}_{size}nm": {
-                "timestep_factor": self.config["production"]["timestep_factor"], "damped": way == "damped",
-                "material": material, "type": kind, "a_eff": size * NM, "seeds": grains["seeds"],
-            }
-            for way, grains in own.items()
-            for material, kind, size in product(grains["materials"], grains["types"], grains["sizes_nm"])
-        }  # fmt: skip
+            name: piece | {"timestep_factor": factor, "damped": way == "damped"} for way, name, piece in _by_way(own)
+        }
 
     def _energy(self, own):
         return {
-            f"{way}_{material}_{kind}_{size}nm": {
-                "material": material, "type": kind, "a_eff": size * NM, "seeds": grains["seeds"],
-            } | (self._production(kind) if way == "paced" else {})
-            for way, grains in own.items()
-            for material, kind, size in product(grains["materials"], grains["types"], grains["sizes_nm"])
-        }  # fmt: skip
+            name: piece | (self._production(piece["type"]) if way == "paced" else {})
+            for way, name, piece in _by_way(own)
+        }
 
     def _free_grain(self, own):
         shared = {key: value for key, value in own.items() if key not in ("types", "size_nm", "seeds")}
@@ -239,3 +232,11 @@ def _each_grain(grains, shared):
         for grain in grains
         for seed in range(grain["seeds"])
     }
+
+
+def _by_way(own):
+    """Way, name and settings of pieces that are a way, a material, a type and a size each, with all their seeds."""
+    for way, grains in own.items():
+        for material, kind, size in product(grains["materials"], grains["types"], grains["sizes_nm"]):
+            piece = {"material": material, "type": kind, "a_eff": size * NM, "seeds": grains["seeds"]}
+            yield way, f"{way}_{material}_{kind}_{size}nm", piece

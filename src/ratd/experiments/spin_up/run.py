@@ -235,6 +235,11 @@ class Run:
         """The run ends when the largest fragment has no more contacts than this."""
         return 1 if self.rows[0][4] > 1 else 0
 
+    @property
+    def has_torque(self):
+        """Whether an outer torque turns the grain; without one there is no balance of energy."""
+        return self.how.attributes["drive"] != "literal"
+
     def edge(self, ahead=0):
         """Angular velocity [rad/s] of the next record, or of the one that comes `ahead` records after it."""
         return min(edge_of_record(len(self.rows) + ahead, self.bound, self.records), OMEGA_RAT)
@@ -259,7 +264,7 @@ class Run:
             self.reason = "omega_RAT reached"
 
     def _check_balance(self, before):
-        if self.how.attributes["drive"] == "literal":
+        if not self.has_torque:
             return
         solid = 0.2 * self.grain.mass.sum() * (self.grain.effective_radius * self.bound) ** 2
         scale = max(self.state.drive[TORQUE_WORK], solid)
@@ -277,7 +282,7 @@ class Run:
 
     def load(self, path):
         """Go on from a file; False when there is none, or it is damaged or of another run."""
-        loaded = checkpoints.load(path, self.key)
+        loaded = None if path is None else checkpoints.load(path, self.key)
         if loaded is not None:
             state, tables = loaded
             self._start(state, tables["rows"].tolist(), list(tables["snapshots"]))
@@ -289,7 +294,7 @@ class Run:
         first, grain = self.rows[0], self.grain
         initial = dict(zip(RECORDS, first[:-1], strict=True))
         run = dataset(self.state, self.rows, self.snapshots, grain)
-        if self.how.attributes["drive"] == "literal":
+        if not self.has_torque:
             run["energy_residual"][:] = np.nan
         run.attrs = (
             self.how.attributes
