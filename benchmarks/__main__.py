@@ -5,7 +5,20 @@ import sys
 from contextlib import nullcontext
 from pathlib import Path
 
-from benchmarks import agreement, answer, compression, cost, kernel, machine, peer, pipeline, profile, report, scaling
+from benchmarks import (
+    agreement,
+    answer,
+    collision,
+    compression,
+    cost,
+    kernel,
+    machine,
+    peer,
+    pipeline,
+    profile,
+    report,
+    scaling,
+)
 from benchmarks.before import Before
 from ratd.base.errors import FileError, InputError
 from ratd.drives.rotating import DRIVES
@@ -16,7 +29,7 @@ from ratd.validation import peer_lammps
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PARTS = ("kernel", "cost", "scaling", "pipeline")
-ON_REQUEST = ("profile", "agreement", "answer", "compression")
+ON_REQUEST = ("profile", "agreement", "answer", "compression", "collision")
 """Parts that are done only when they are named."""
 
 PROFILED = ("150", "300")
@@ -199,6 +212,13 @@ def _compression(arguments, out, about):
     compression.measure(out, numbers=numbers, steps=steps, about=about, say=say)
 
 
+def _collision(arguments, out, about):
+    peer_lammps.load()
+    number, duration = (200, 2e-8) if arguments.quick else (collision.NUMBER, 3e-6)
+    steps = 400 if arguments.quick else 2 * arguments.steps
+    collision.measure(out, number=number, steps=steps, duration=duration, about=about, say=say)
+
+
 def _agreement(arguments, out, about):
     agreement.main(arguments.before, 3 if arguments.quick else arguments.grains, ROOT, say)
 
@@ -212,6 +232,7 @@ _MEASURE = {
     "agreement": _agreement,
     "answer": _answer,
     "compression": _compression,
+    "collision": _collision,
 }
 
 

@@ -106,6 +106,13 @@ def goals(out):
             Goal(f"{what}, LAMMPS over ratd, with long steps", "times", other["hours"] / long["hours"], 100.0, False),
             Goal(f"growth of a cluster of {own['monomers']}", "s", own["growth_seconds"], 2.0, True),
         ]  # fmt: skip
+    shot = frame(out, "collision")
+    if shot is not None:
+        met = shot[(shot["code"] == "ratd") & (shot["friction"] == "velocity")].iloc[0]
+        what = f"collision of {met['spheres']:.0f} MRN spheres"
+        found.append(Goal(what, "ns per contact and step", met["ns_per_contact_step"], 25.0, True))
+        for row, most in zip(shot[shot["code"].isna()].itertuples(), (3.0, 120.0), strict=True):
+            found.append(Goal(row.what, "s", row.seconds, most, True))
     if overhead is not None:
         share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
         largest = overhead["size_nm"].max()

@@ -25,10 +25,8 @@ def write(out):
     """
     text = "All of this is written by `python -m benchmarks`; the numbers stand in the CSV files here."
     parts = [f"# Measured speed\n\n{text}\n"]
-    parts += [
-        section(out)
-        for section in (_goals_section, _kernel, _answer, _compression, _cost, _profile, _scaling, _pipeline)
-    ]
+    sections = _goals_section, _kernel, _answer, _compression, _collision, _cost, _profile, _scaling, _pipeline
+    parts += [section(out) for section in sections]
     with atomic(out / "README.md") as part:
         part.write_text("\n".join(part_ for part_ in parts if part_), encoding="utf-8")
 
@@ -256,6 +254,22 @@ def _compression(out):
     )
     head = ["monomers", "code", "ns per contact and step", "steps", "hours"]
     return "\n".join(["## Compression\n", _where(data), about, table(head, rows)])
+
+
+def _collision(out):
+    data = frame(out, "collision")
+    if data is None:
+        return ""
+    data = data[data["code"].notna()]
+    rows = [[row.code, row.friction, f"{row.ns_per_contact_step:.1f}", f"{row.steps:.0f}"] for row in data.itertuples()]
+    own = data.iloc[0]
+    about = (
+        f"Two MRN clusters that meet at {own['velocity']:g} m/s, {own['spheres']:.0f} spheres and "
+        f"{own['contacts']:.0f} contacts, steps of {1e12 * own['timestep']:g} ps, from where they are 20 nm "
+        "apart. The friction of ratd is that of the documents; LAMMPS has none of its kind.\n"
+    )
+    head = ["code", "friction", "ns per contact and step", "steps"]
+    return "\n".join(["## Collision\n", _where(data), about, table(head, rows)])
 
 
 def _profile(out):

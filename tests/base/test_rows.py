@@ -5,7 +5,7 @@ import pytest
 from numba.core.errors import TypingError
 
 from ratd.base.jit import jit
-from ratd.base.rows import EIGHT, add_forces, gather_differences, gather_sides
+from ratd.base.rows import EIGHT, add_forces, call_line, gather_differences, gather_sides
 
 STRIDE = 11
 NUMBERS = [0, 1, 2, 4, 5, 6]
@@ -20,6 +20,19 @@ def gathered(rows, first, second, begin, columns, at, stride):
 @jit
 def added(rows, first, second, begin, columns, at, stride):
     add_forces(rows, first, second, begin, columns, at, stride)
+
+
+@jit
+def called(numbers, first, last):
+    for at in range(first, last):
+        call_line(numbers, np.uint64(at))
+
+
+def test_calling_lines_changes_nothing_also_beyond_the_end():
+    numbers = np.random.default_rng(2).normal(size=50)
+    before = numbers.copy()
+    called(numbers, 0, 10_000_000)
+    np.testing.assert_array_equal(numbers, before)
 
 
 def test_rows_are_gathered_as_columns():

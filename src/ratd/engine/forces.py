@@ -1,32 +1,59 @@
 """Forces and torques of all contacts at one step: the hot loop of ratd.
 
 Three passes over one block of contacts after the other: gather what depends on the two monomers, let the law compute
-all contacts of the block, sum forces and torques per monomer.
+all contacts of the block, sum forces and torques per monomer. What the next block needs is called from memory
+meanwhile: tens of thousands of monomers do not fit into the caches, and the processor does not foresee which of the
+fields of a block comes next.
 """
 
 import numpy as np
 
 from ratd.base.jit import jit
-from ratd.base.rows import EIGHT, add_forces, gather_differences, gather_sides
-from ratd.engine.layout import CONTACTS, DT_DRIFT, VIRIAL
-from ratd.laws.contact_fields import DX, FX, LANES, SCRATCH_SIZE, VECTOR, WIX
+from ratd.base.rows import EIGHT, LINE, add_forces, call_line, gather_differences, gather_sides
+from ratd.engine.layout import CONTACTS, DT_DRIFT, FORCE_ROW, MONOMERS, ROW, VIRIAL
+from ratd.laws.contact_fields import DX, FX, LANES, RARE, SCRATCH_SIZE, VECTOR, WIX
 
 _LANES = np.uint64(LANES)
+_LINE = np.uint64(LINE)
+_ROW = np.uint64(ROW)
+_FORCE_ROW = np.uint64(FORCE_ROW)
+MANY = 20_000
+"""Monomers from which on it pays to call them from memory too; fewer are in a cache still (measured, BA and BAM2)."""
 
 
 @jit(forceinline=True)
-def _gather(monomer, pair_i, pair_j, scratch, first, count):
-    for lane in range(0, count, VECTOR):
-        q = np.uint64(lane)
-        gather_differences(monomer, pair_i, pair_j, first + q, scratch, DX + q, _LANES)
-        gather_sides(monomer, pair_i, pair_j, first + q, scratch, WIX + q, _LANES)
+def _call_contacts(contact, begin, count):
+    for at in range(0, count, LINE):
+        call_line(contact, begin + np.uint64(at))
 
 
 @jit(forceinline=True)
-def _scatter(force, pair_i, pair_j, scratch, first, count):
+def _call_monomers(state, first):
+    for lane in range(VECTOR):
+        pair = first + np.uint64(lane)
+        for k in (state.pair_i[pair], state.pair_j[pair]):
+            call_line(state.monomer, k * _ROW)
+            call_line(state.monomer, k * _ROW + _LINE)
+            call_line(state.force, k * _FORCE_ROW)
+
+
+@jit(forceinline=True)
+def _gather(state, scratch, first, count, ahead, share, many):
     for lane in range(0, count, VECTOR):
         q = np.uint64(lane)
-        add_forces(force, pair_i, pair_j, first + q, scratch, FX + q, _LANES)
+        _call_contacts(state.contact, ahead + q * share, VECTOR * share)
+        if many:
+            _call_monomers(state, first + _LANES + q)
+        gather_differences(state.monomer, state.pair_i, state.pair_j, first + q, scratch, DX + q, _LANES)
+        gather_sides(state.monomer, state.pair_i, state.pair_j, first + q, scratch, WIX + q, _LANES)
+
+
+@jit(forceinline=True)
+def _scatter(state, scratch, first, count, ahead, share):
+    for lane in range(0, count, VECTOR):
+        q = np.uint64(lane)
+        _call_contacts(state.contact, ahead + q * share, VECTOR * share)
+        add_forces(state.force, state.pair_i, state.pair_j, first + q, scratch, FX + q, _LANES)
 
 
 @jit
@@ -56,21 +83,23 @@ def contact_forces(state, law, box, scratch, dt):
     int
         Number of contacts that have ended, to be removed after the kick.
     """
-    monomer, force, contact = state.monomer, state.force, state.contact
-    pair_i, pair_j = state.pair_i, state.pair_j
     n_contacts = state.counter[CONTACTS]
     dt_drift = state.scalar[DT_DRIFT]
     edges = box.edges(state.scalar)
     size = law.n_fields()
+    # numbers of the next block that are called for each contact gathered, and as many for each one summed
+    share = np.uint64((size - RARE) // 2)
+    many = state.counter[MONOMERS] > MANY
     ended = 0
     for first in range(0, n_contacts, LANES):
         count = min(LANES, (n_contacts - first + VECTOR - 1) // VECTOR * VECTOR)
         start = np.uint64(first * size)
         at = np.uint64(first)
-        _gather(monomer, pair_i, pair_j, scratch, at, count)
+        ahead = start + np.uint64(LANES * (size + RARE))
+        _gather(state, scratch, at, count, ahead, share, many and first + 2 * LANES <= state.pair_i.shape[0])
         box.place_images(state.image, scratch, at, count, edges)
-        ended += law.forces(contact, scratch, start, count, dt_drift, dt)
+        ended += law.forces(state.contact, scratch, start, count, dt_drift, dt)
         box.add_virial(scratch, count)
-        _scatter(force, pair_i, pair_j, scratch, at, count)
+        _scatter(state, scratch, at, count, ahead + _LANES * share, share)
     box.sum_virial(scratch, state.scalar, VIRIAL)
     return ended

@@ -20,16 +20,18 @@ def _offsets(first, count):
 
 # --- contacts: fields of every law ---------------------------------------------------------------------------------
 COMMON = 12
+RARE = 4
+"""The first so many fields are not needed in every step; the others are called from memory ahead of their block."""
 (
+    STEP,  # shortest time of the contact [s], which limits the time step
+    E_SLIDE, E_ROLL, E_TWIST, E_DAMP,  # energy dissipated since the contact formed [J]
     NCX, NCY, NCZ,  # direction from j to i
     NORMAL,  # normal force without damping [N], > 0 pushing
-    E_DAMP, E_SLIDE, E_ROLL, E_TWIST,  # energy dissipated since the contact formed [J]
     A_I, A_J,  # radii [m]
     DAMPING_RATE,  # of the implicit damping [1/s], 0 where it is explicit
-    STEP,  # shortest time of the contact [s], which limits the time step
 ) = _offsets(0, COMMON)  # fmt: skip
 MODES = ("damping", "sliding", "rolling", "twisting")
-"""Ways in which a contact dissipates energy, in the order of the fields E_DAMP ... E_TWIST."""
+"""Ways in which a contact dissipates energy: E_DAMP, E_SLIDE, E_ROLL, E_TWIST."""
 
 
 def law_fields(count):

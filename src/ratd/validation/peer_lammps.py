@@ -52,7 +52,7 @@ atom_modify map array sort 0 0
 boundary s s s
 newton off
 comm_modify vel yes
-region world block -1 1 -1 1 -1 1
+region world block -{half} {half} -{half} {half} -{half} {half}
 create_box {n} world
 """
 _FRAME = """
@@ -62,7 +62,7 @@ variable fy atom mass*v_frame*(v_frame*y-2*vx)
 fix frame all addforce v_fx v_fy 0
 """
 _SETTINGS = """
-neighbor {skin} nsq
+neighbor {skin} {search}
 neigh_modify every 1 delay 0 check yes one {one} page {page}
 compute name all property/local patom1 patom2
 compute vector all pair/local p10 p11 p12
@@ -237,16 +237,22 @@ class Spheres:
         ``(a_i, a_j, material)`` -> coefficients of a pair; default `pair_coefficients`.
     classes : int, optional
         See `sort_by_radius`.
+    search : {"nsq", "multi"}
+        How neighbours are found: among all pairs, or in cells of their own for each type, which many spheres of very
+        different radii need.
     """
 
-    def __init__(self, position, radius, material, timestep, coefficients=pair_coefficients, classes=None):
+    def __init__(
+        self, position, radius, material, timestep, coefficients=pair_coefficients, classes=None, search="nsq"
+    ):
         radius = np.asarray(radius, dtype=float)
         n = len(radius)
         of_sphere, of_type = sort_by_radius(radius, classes)
         self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
         self._n = n
         self._turning = False
-        self._say(_COMMANDS.format(n=len(of_type)))
+        half = 2.0 * float(np.abs(position).max() + radius.max())
+        self._say(_COMMANDS.format(n=len(of_type), half=half))
         number = np.arange(1, n + 1)
         self._lammps.create_atoms(n, number.tolist(), (of_sphere + 1).tolist(), np.ravel(position).tolist())
         self._atoms("radius")[:n] = radius
@@ -256,7 +262,8 @@ class Spheres:
             words = coefficients(of_type[i], of_type[j], material)
             models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
             self._say(f"pair_coeff {i + 1} {j + 1} {models}")
-        self._say(_SETTINGS.format(skin=SKIN, timestep=timestep, one=max(2000, n), page=max(100_000, 10 * n)))
+        room = {"one": max(2000, n), "page": max(100_000, 10 * n)}
+        self._say(_SETTINGS.format(skin=SKIN, search=search, timestep=timestep, **room))
         self.advance(0)
 
     def __enter__(self):
