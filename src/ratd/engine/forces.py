@@ -18,7 +18,7 @@ _LINE = np.uint64(LINE)
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
 MANY = 20_000
-"""Monomers from which on it pays to call them from memory too; fewer are in a cache still (measured, BA and BAM2)."""
+"""Contacts, and monomers, from which on it pays to call them from memory; fewer are in a cache still (measured)."""
 
 
 @jit(forceinline=True)
@@ -88,7 +88,7 @@ def contact_forces(state, law, box, scratch, dt):
     edges = box.edges(state.scalar)
     size = law.n_fields()
     # numbers of the next block that are called for each contact gathered, and as many for each one summed
-    share = np.uint64((size - RARE) // 2)
+    share = np.uint64((size - RARE) // 2 if n_contacts > MANY else 0)
     many = state.counter[MONOMERS] > MANY
     ended = 0
     for first in range(0, n_contacts, LANES):
