@@ -73,11 +73,6 @@ def goals(out):
     data, small, runs = frame(out, "kernel"), frame(out, "small"), frame(out, "cost_runs")
     others, paper = frame(out, "combinations"), frame(out, "cost_paper")
     growth, overhead = frame(out, "scaling"), frame(out, "pipeline")
-        frame(out, "combinations"),
-        frame(out, "cost_paper"),
-        frame(out, "scaling"),
-        frame(out, "pipeline"),
-    )
     found = []
     for (name, motion), case in [] if data is None else data.groupby(["aggregate", "motion"], sort=False):
         own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
