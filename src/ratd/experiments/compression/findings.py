@@ -11,7 +11,7 @@ from ratd.aggregates.strength import (
     midplane_tension,
 )
 from ratd.base.materials import get_material
-from ratd.base.statistics import mean_of
+from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.figures.tension import in_units
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.strength import (
@@ -34,6 +34,10 @@ __all__ = ["findings", "spun_up"]
 
 AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
+LOW_RANGE = (0.01, 0.05)
+"""Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
+STEPS_AT = (0.01, 0.02)
+"""Filling factors below the range of the fit at which long steps are compared with explicit ones."""
 WAYS = ("rolling", "twisting", "sliding", "damping")
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
@@ -67,6 +71,9 @@ def of_set(name, table):
     if last * NEAR > FIT_RANGE[1]:
         exponent, at, ratio = _several(fit_power_law(table))
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
+    if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
+        found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
+    found["rolling_over_damping"] = overtakes(table, "rolling", "damping", found["static"])
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
     part = np.abs(table["energy_residual"].values / table["work"].values)
@@ -154,8 +161,23 @@ def of_steps(tables):
                 for each in (table, explicit)
             )
             found[f"{name}.over_{column}"] = Measured(*mean_of(own / other[same]))
+        for value in STEPS_AT:
+            own, other = (_near(each, value) for each in (table, explicit))
+            found[f"{name}.over_pressure_{value:g}"] = _ratio_of_means(own, other[same])
         found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
     return found
+
+
+def _near(table, phi):
+    """Pressures of single clusters near a filling factor, (seeds,)."""
+    k = _bin_at(table, phi)
+    return table["pressure"].values[:, k - 2 : k + 3].mean(axis=1)
+
+
+def _ratio_of_means(own, other):
+    """Mean over mean of the same clusters, with the error of leaving one out at a time."""
+    left = [np.delete(own, k).mean() / np.delete(other, k).mean() for k in range(len(own))]
+    return Measured(float(own.mean() / other.mean()), jackknife_error(np.array(left)))
 
 
 def _bin_at(table, phi):
@@ -179,10 +201,17 @@ def of_tension(entries):
                 found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
                 found[f"tension_{way}.n_{key}"] = int(here.sum())
             if len(np.unique(phi[own])) > 1:
-                slope, at = np.polyfit(np.log(phi[own]), np.log(strength[own]), 1)
-                found[f"tension_{way}.exponent_{rate:.0e}"] = float(slope)
-                found[f"tension_{way}.factor_{rate:.0e}"] = float(np.exp(at))
+                x, y, seed = np.log(phi[own] / 0.1), np.log(strength[own]), entries["seed"].values[own]
+                found[f"tension_{way}.exponent_{rate:.0e}"] = _slope(x, y, seed)
     return found
+
+
+def _slope(x, y, seed):
+    """Slope of y over x by least squares, with the error of leaving one seed out at a time."""
+    left = [seed != one for one in np.unique(seed)]
+    whole = len(left) > 1 and all(len(np.unique(x[own])) > 1 for own in left)
+    slopes = [np.polyfit(x[own], y[own], 1)[0] for own in left] if whole else []
+    return Measured(float(np.polyfit(x, y, 1)[0]), jackknife_error(np.array(slopes)))
 
 
 def spun_up(grains, mark="omega_disr"):
@@ -302,6 +331,10 @@ def findings(sets, entries, spun, lammps=None):
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )
+    if HIGH in sets:
+        # of a cluster over N^(1/2) r_0; the pressure that Sect. 4 of the paper derives goes with its sixth power
+        values["width"] = values[f"{HIGH}.gyration"].value / math.sqrt(values[f"{HIGH}.N"])
+        values["width_6"] = values["width"] ** 6
     if entries is not None:
         values |= of_tension(entries)
     if lammps is not None:

@@ -206,6 +206,7 @@ def findings(data, fits):
     values |= beside.composition_tables() | beside.of_heat()
     values |= of_pulled(data.pulled, data.driven)
     printed = load(*CONFIGS).config["literal"]
+    values["p.acceleration"] = printed["angular_acceleration"]
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
     values |= beside.of_lammps(data.lammps)
     values |= of_studies(data.studies)

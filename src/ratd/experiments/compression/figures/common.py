@@ -70,7 +70,7 @@ def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
 
 
 def draw_curves(above, below, tables, labels, *, alone=False):
-    """Mean pressures with bands of one standard error, into both panels."""
+    """Mean pressures with bands of one standard error, into both panels; thin where a set is not static yet."""
     for k, (table, label) in enumerate(zip(tables, labels, strict=True)):
         mean, error = mean_pressure(table, alone=alone)
         phi = table["phi"].values
@@ -78,7 +78,9 @@ def draw_curves(above, below, tables, labels, *, alone=False):
         style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
         for axes, unit in ((above, 1.0), (below, line)):
             value = np.where(mean > 0.0, mean, np.nan) / unit
-            axes.plot(phi, value, label=label, **style)
+            static = phi > table["static_from"].values[0]
+            axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
+            axes.plot(phi, value, color=style["color"], lw=0.5)
             low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
             axes.fill_between(phi, np.where(mean > 0.0, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
 

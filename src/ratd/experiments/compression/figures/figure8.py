@@ -1,17 +1,24 @@
 """Fig. 8 of Kataoka et al. (2013): where the energy goes."""
 
+import numpy as np
+
 from ratd.experiments.compression.figures.common import PHI_LABEL, WAYS, damping_of, read_sets, strain_text
 from ratd.experiments.compression.strength import rates
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
+NAMES = {"damping": "damping and long steps"}
+"""What a curve is called where it is more than its name says."""
+
 
 def panel(axes, table, text):
-    """Energy dissipated per step in ln phi and monomer, by way."""
+    """Energy dissipated while ln phi grows by 1, over N, by way."""
     phi, rate = rates(table, tuple(WAYS))
     n = table["n_monomers"].item()
     for way, (colour, dash) in WAYS.items():
-        axes.plot(phi, rate[way] / n, color=colour, ls=dash, label=way)
-    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-15), xlim=(phi[0], 0.5))
+        axes.plot(
+            phi, np.where(rate[way] > 0.0, rate[way], np.nan) / n, color=colour, ls=dash, label=NAMES.get(way, way)
+        )
+    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-14), xlim=(phi[0], 0.5))
     axes.text(0.04, 0.04, text, transform=axes.transAxes)
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.strength import compressive_strength_tatsuuma2023
-from ratd.experiments.compression.figures.common import COLOURS, PHI_LABEL, RATIO_LABEL, read_sets
+from ratd.experiments.compression.figures.common import COLOURS, PHI_LABEL, RATIO_LABEL, read_sets, seeds_text
 from ratd.experiments.compression.strength import fit_with_limit, mean_pressure
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
@@ -18,7 +18,13 @@ def high_density(tables):
         mean, error = mean_pressure(table)
         line = P_0 * phi**3
         style = {"color": COLOURS[k], "marker": "os^"[k % 3], "ls": "none"}
-        axes.errorbar(phi[::2], (mean / line)[::2], (error / line)[::2], label=table.attrs["material"], **style)
+        axes.errorbar(
+            phi[::2],
+            (mean / line)[::2],
+            (error / line)[::2],
+            label=f"{table.attrs['material']}, {seeds_text(table)}",
+            **style,
+        )
         high = min(0.5, phi[np.isfinite(mean)].max())
         c, largest = fit_with_limit(table, high=high).value
         x = np.linspace(0.08, 0.52, 60)
@@ -27,7 +33,7 @@ def high_density(tables):
         axes.plot(x, fitted, color=COLOURS[k], lw=0.8, label=text)
     x = np.linspace(0.08, 0.52, 60)
     recalled = compressive_strength_tatsuuma2023(x, 1.0) / x**3
-    axes.plot(x, recalled, color="black", ls="--", lw=0.8, label=r"Tatsuuma et al. 2023: $\phi_\mathrm{max}$ = 0.74")
+    axes.plot(x, recalled, color="black", ls="--", lw=0.8, label="Tatsuuma et al. 2023, recalled")
     axes.set(yscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=(0.05, 0.52), ylim=(0.5, 60))
     logarithmic(axes.yaxis)
     axes.legend(loc="upper left")

@@ -1,9 +1,14 @@
 """Monomers of unequal radii: which length takes the place of r_0."""
 
+import json
+
 from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL, read_sets
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.strength import mean_pressure
 from ratd.pictures.style import TWO_COLUMNS, logarithmic, new_figure, styled
+
+LAWS = {"lognormal": "lognormal", "mrn": r"$a^{-3.5}$"}
+"""Law of the radii in the settings of a set -> its text."""
 
 
 @styled
@@ -34,6 +39,7 @@ def draw(files, settings):
 
 
 def name_of(table):
-    """How wide the radii of a table are spread, in words."""
+    """The set of a table, as its settings name the radii, and how wide they are spread."""
     ratio = table["mean_radius"].item() / table["monomer_radius"].item()
-    return rf"$\langle a\rangle/\langle a^3\rangle^{{1/3}}$ = {ratio:.2f}"
+    law = LAWS[json.loads(table.attrs["settings"])["radii"]["law"]]
+    return rf"{law}, $\langle a\rangle$ = {ratio:.2f} $\langle a^3\rangle^{{1/3}}$"

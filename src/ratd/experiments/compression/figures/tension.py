@@ -24,12 +24,17 @@ def tension(entries, spun=None):
     entries : xarray.Dataset
         Of the kind ``tension_set``.
     spun : dict, optional
-        Grains that were spun up: ``phi`` and ``strength``, S a/gamma, (k,) each.
+        Grains that were spun up: ``phi``, ``strength``, S a/gamma, and ``type``, (k,) each.
     """
     figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, "tensile strength")
     axes = figure.subplots()
     if spun is not None:
-        axes.plot(spun["phi"], spun["strength"], ".", color="#BBBBBB", ms=2, label="grains spun up", zorder=0)
+        for kind, marker, grey in zip(np.unique(spun["type"]), ".x+", ("#777777", "#999999", "#BBBBBB"), strict=False):
+            own = spun["type"] == kind
+            axes.plot(
+                spun["phi"][own], spun["strength"][own], marker, color=grey, ms=3, mew=0.6, label=f"{kind} spun up",
+                zorder=0,
+            )  # fmt: skip
     how = np.stack([entries["n_axes"].values, entries["strain_rate"].values, entries["n_monomers"].values], axis=1)
     strength, _ = in_units(entries)
     for k, (n_axes, rate, n) in enumerate(np.unique(how, axis=0)[::-1]):

@@ -14,6 +14,7 @@ from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.findings.ensemble import MARK, middle, of_class
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_share
+from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.base.measured import Measured, median
 
 __all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
@@ -167,6 +168,8 @@ def grown_claims(grown):
     values["g.dimension change"], values["g.holds dimension change"] = change, is_above(change, 0.0)
     radius = grown["mean_monomer_radius"] / NM
     values["g.radius"] = Measured(*mean_of(radius, cell_of(grown)))
+    # the printed omega goes with the root of the mean radius
+    values["g.radius factor"] = math.sqrt(values["g.radius"].value / (PAPER_MEAN_RADIUS / NM))
     values["g.radius range"] = middle(radius)
     values["g.holds radius"] = is_within(values["g.radius"], 18.0, 22.0)
     correlation = rank_correlation(grown["n_monomers"].to_numpy(), grown["a_eff"].to_numpy())
