@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.experiments.collision.fragmentation import fragmentation, fragmentation_velocity
+from ratd.experiments.collision.fragmentation import bootstrap_means, fragmentation, fragmentation_velocity
 
 
 def made_up(piece, radius, cluster):
@@ -67,3 +67,14 @@ def test_the_last_fall_counts_and_none_gives_nan():
 def test_bad_tables_are_refused(rows, words):
     with pytest.raises(InputError, match=words):
         fragmentation_velocity(rows)
+
+
+def test_rotations_of_one_sample_do_not_make_the_error_of_two_samples_smaller():
+    rng = np.random.default_rng(5)
+    samples = pd.DataFrame({"velocity": 3.0, "sample": np.repeat([1, 2], 40), "X": np.repeat([0.0, 1.0], 40)})
+    means = bootstrap_means(samples, "X", [3.0], 20_000, rng)[0]
+    # two draws of two values: 0, 1/2, 1/2, 1
+    np.testing.assert_allclose([np.mean(means == value) for value in (0.0, 0.5, 1.0)], [0.25, 0.5, 0.25], atol=0.02)
+    rotations = samples.assign(sample=1)
+    means = bootstrap_means(rotations, "X", [3.0], 20_000, rng)[0]
+    assert means.std() == pytest.approx(0.5 / np.sqrt(80), rel=0.03)

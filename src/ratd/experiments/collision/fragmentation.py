@@ -72,11 +72,11 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     Parameters
     ----------
     table : pandas.DataFrame
-        One row a collision: `velocity` [m/s] and `X`.
+        One row a collision: `velocity` [m/s] and `X`; where there are several clusters of a kind, `sample` as well.
     limit : float
         X of the threshold.
     samples, seed : int
-        Of the bootstrap, which draws collisions of each velocity among themselves.
+        Of the bootstrap, see `bootstrap_means`.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     groups = [table["X"].to_numpy(float)[table["velocity"].to_numpy() == v] for v in velocities]
     middle = _crossing(velocities, np.array([group.mean() for group in groups]), limit)
     rng = np.random.Generator(np.random.PCG64(seed))
-    means = np.stack([group[rng.integers(len(group), size=(samples, len(group)))].mean(axis=1) for group in groups])
+    means = bootstrap_means(table, "X", velocities, samples, rng)
     drawn = np.array([_crossing(velocities, mean, limit) for mean in means.T])
     there = np.isfinite(drawn)
     spread = drawn[there] if there.sum() > 1 else np.full(2, np.nan)
@@ -114,6 +114,46 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
     values = {"velocity": middle, "error": np.std(spread, ddof=1), "low": low, "high": high, "found": there.mean()}
     return pd.Series(values | ends)
+
+
+def bootstrap_means(table, column, velocities, count, rng):
+    """Means of a column at some velocities, drawn anew.
+
+    First samples of the cluster are drawn, with replacement and the same at all velocities, then rotations of each:
+    rotations of one sample are no draws of the law of the radii.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a collision: `velocity`, the column, and `sample` where there is more than one.
+    column : str
+    velocities : (k,) array_like
+        Each with at least one collision.
+    count : int
+        Number of draws.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    (k, count) float64 array
+        NaN where none of the samples drawn has the velocity.
+    """
+    value, velocity = (table[name].to_numpy(float) for name in (column, "velocity"))
+    sample = table["sample"].to_numpy() if "sample" in table else np.zeros(len(table))
+    names = np.unique(sample)
+    chosen = rng.integers(len(names), size=(count, len(names)))
+    means = np.empty((len(velocities), count))
+    for k, one in enumerate(velocities):
+        drawn = np.full((len(names), count, len(names)), np.nan)
+        for row, name in zip(drawn, names, strict=True):
+            own = value[(velocity == one) & (sample == name)]
+            if len(own):
+                row[...] = own[rng.integers(len(own), size=(count, len(names), len(own)))].mean(axis=2)
+        picked = np.take_along_axis(drawn, chosen[None], axis=0)[0]
+        there = np.isfinite(picked)
+        with np.errstate(invalid="ignore"):
+            means[k] = np.where(there, picked, 0.0).sum(axis=1) / there.sum(axis=1)
+    return means
 
 
 def _crossing(velocity, mean, limit):

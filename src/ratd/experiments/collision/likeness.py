@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.mrn import moment_of_length
+from ratd.experiments.collision.fragmentation import bootstrap_means
 from ratd.pipeline.kinds import Kind, entries, register
 
 __all__ = ["COLUMNS", "QUANTITIES", "likeness", "likeness_table"]
@@ -36,16 +37,6 @@ POINTS = 201
 """Radii that are tried, evenly in the logarithm."""
 
 
-def _means(table, quantity, groups, rng=None):
-    """Mean of a quantity at each velocity, (velocities,), of one cluster; drawn anew where a generator is given."""
-    values = []
-    for group in groups:
-        own = table[quantity].to_numpy(float)[group]
-        own = own if rng is None else own[rng.integers(len(own), size=len(own))]
-        values.append(np.mean(own))
-    return np.array(values)
-
-
 def likeness(cluster, equal, quantity, samples=500, seed=0):
     """Radius of the equal spheres that a cluster is most like.
 
@@ -58,7 +49,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
     quantity : str
         A column.
     samples, seed : int
-        Of the bootstrap over the collisions at each velocity.
+        Of the bootstrap, see `ratd.experiments.collision.fragmentation.bootstrap_means`.
 
     Returns
     -------
@@ -74,19 +65,21 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
         nothing = dict.fromkeys(("radius", "radius_low", "radius_high", "misfit", "at_end"), np.nan)
         return {"velocities": len(common)} | nothing
     tables = [cluster, *(equal[radius] for radius in radii)]
-    groups = [[np.flatnonzero(table["velocity"].to_numpy() == v) for v in common] for table in tables]
     grid = np.geomspace(radii[0], radii[-1], POINTS)
 
-    def best(rng=None):
-        own, *others = (_means(table, quantity, group, rng) for table, group in zip(tables, groups, strict=True))
+    def best(means):
+        own, *others = means
         curve = [np.interp(np.log(grid), np.log(radii), values) for values in np.transpose(others)]
         misfit = np.sqrt(np.mean((np.array(curve) - own[:, None]) ** 2, axis=0))
         k = int(np.argmin(misfit))
         return grid[k], misfit[k]
 
-    radius, misfit = best()
+    radius, misfit = best([table.groupby("velocity")[quantity].mean()[common].to_numpy() for table in tables])
     rng = np.random.Generator(np.random.PCG64(seed))
-    low, high = np.quantile([best(rng)[0] for _ in range(samples)], [0.16, 0.84])
+    drawn = np.stack([bootstrap_means(table, quantity, common, samples, rng) for table in tables])
+    # a draw of samples that lack a velocity says nothing
+    whole = np.flatnonzero(np.isfinite(drawn).all(axis=(0, 1)))
+    low, high = np.quantile([best(drawn[:, :, k])[0] for k in whole], [0.16, 0.84])
     at_end = float(radius in (grid[0], grid[-1]))
     ends = {"radius_low": low, "radius_high": high}
     return {"velocities": len(common), "radius": radius, **ends, "misfit": misfit, "at_end": at_end}

@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import collisions_of, is_equal, means, velocity_axis
+from ratd.experiments.collision.figures.look import (
+    cluster_text,
+    collisions_of,
+    is_equal,
+    label_of,
+    law_text,
+    means,
+    velocity_axis,
+)
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 WAYS = {
@@ -32,11 +40,11 @@ def dissipation(table, law, clusters):
     matplotlib.figure.Figure
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Where the energy of the impact goes, law {law}")
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Where the energy of the impact goes, {law_text(law)}")
     panels = figure.subplots(1, len(clusters), sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, clusters, strict=True):
         own = table[table["cluster"] == name]
-        axes.set_title(name.replace("_", " "), pad=2)
+        axes.set_title(label_of(own) if len(own) else cluster_text(name), pad=2)
         if not len(own):
             empty(axes, "no collisions")
             continue

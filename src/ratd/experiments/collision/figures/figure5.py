@@ -6,6 +6,7 @@ from ratd.experiments.collision.figures.look import (
     collisions_of,
     colour_of,
     is_equal,
+    law_text,
     marker_of,
     plot_means,
     radius_label,
@@ -13,7 +14,7 @@ from ratd.experiments.collision.figures.look import (
     velocity_axis,
 )
 from ratd.experiments.collision.fragmentation import STICKING
-from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 
@@ -35,7 +36,7 @@ def figure5(table, law):
     """
     shown = table[(table["law"] == law) & is_equal(table) & (table["impact_parameter"] == 0)]
     shown = shown[shown["second_contact"] == shown["second_contact"].mode().iloc[0]] if len(shown) else shown
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Clusters of equal spheres, law {law}")
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Clusters of equal spheres, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(shown):
         empty(left, "no collisions of equal spheres")
@@ -43,13 +44,15 @@ def figure5(table, law):
     radii = np.sort(shown["largest_radius"].unique())
     for radius in radii:
         part = shown[shown["largest_radius"] == radius]
-        look = {"color": colour_of(radius, radii), "marker": marker_of(radius, radii), "lw": 0.9}
+        look = {"color": colour_of(radius, RADII), "marker": marker_of(radius, RADII), "lw": 0.9}
         for axes, quantity in ((left, "X"), (right, "N_s")):
             plot_means(axes, part, quantity, radius_label(radius), **look)
         for known, velocity in PRINTED_THRESHOLDS.items():
             if abs(known / radius - 1) < 1e-6:
                 left.plot(velocity, STICKING, marker="v", ms=7, mfc="none", color=look["color"], ls="none", zorder=4)
+    (mark,) = left.plot([], [], marker="v", ms=7, mfc="none", color="black", ls="none")
     sticking_line(left, STICKING)
+    left.legend([mark], [r"$v_\mathrm{frag}$ printed"], loc="upper right")
     for axes, name in ((left, "agglomeration $X$"), (right, "fragmentation $N_\\mathrm{s}$")):
         velocity_axis(axes, shown)
         axes.set(ylabel=name, ylim=(-0.03, 1.03))

@@ -5,8 +5,10 @@ import numpy as np
 from ratd.experiments.collision.figures.look import (
     collisions_of,
     MRN_STYLE,
+    cluster_text,
     colour_of,
     is_equal,
+    law_text,
     marker_of,
     plot_means,
     radius_label,
@@ -14,7 +16,7 @@ from ratd.experiments.collision.figures.look import (
     velocity_axis,
 )
 from ratd.experiments.collision.fragmentation import STICKING
-from ratd.experiments.collision.printed import PRINTED_RADII
+from ratd.experiments.collision.printed import PRINTED_RADII, RADII
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
 BESIDE = sorted({radius for radius, _ in PRINTED_RADII.values()})
@@ -38,7 +40,7 @@ def figure6(table, law, mrn):
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
     own, equal = table[table["cluster"] == mrn], table[is_equal(table)]
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, law {law}")
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(own):
         empty(left, "no collisions of MRN clusters")
@@ -47,10 +49,10 @@ def figure6(table, law, mrn):
         for radius in BESIDE:
             part = equal[np.isclose(equal["largest_radius"], radius) & (equal["second_contact"] == 0.5)]
             if len(part):
-                look = {"color": colour_of(radius, BESIDE), "marker": marker_of(radius, BESIDE), "lw": 0.9}
+                look = {"color": colour_of(radius, RADII), "marker": marker_of(radius, RADII), "lw": 0.9}
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
-        plot_means(axes, own, quantity, mrn.replace("_", " "), **MRN_STYLE, zorder=4)
+        plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=4)
         velocity_axis(axes, own)
         axes.set_ylim(-0.03, 1.03)
     sticking_line(left, STICKING)

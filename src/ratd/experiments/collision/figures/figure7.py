@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
+from ratd.experiments.collision.figures.look import cluster_text
 from ratd.experiments.collision.tables import mean_energy, series_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
@@ -25,7 +26,7 @@ def figure7(groups):
     velocities = sorted({row["velocity"] for series in groups.values() for row, _ in series})
     longest = max((s["time"].iloc[-1] for series in groups.values() for _, s in series), default=1e-6)
     for axes, (name, series) in zip(panels, groups.items(), strict=True):
-        axes.set_title(name, pad=2)
+        axes.set_title(cluster_text(name), pad=2)
         axes.set_xlabel("time $t$ [µs]")
         if not series:
             empty(axes, "no collisions")

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import collisions_of, MARKERS, is_equal, means
+from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, is_equal, law_text, means
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
 
 MOST = 6
@@ -27,7 +27,7 @@ def figure8(table, law, mrn):
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0) & table["energy_half"].notna()]
     equal, own = table[is_equal(table) & (table["second_contact"] == 0.5)], table[table["cluster"] == mrn]
-    figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, f"Energy left at 0.5 µs, law {law}")
+    figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, f"Energy left at 0.5 µs, {law_text(law)}")
     axes = figure.subplots()
     if not len(equal):
         empty(axes, "no collisions")
@@ -46,7 +46,7 @@ def figure8(table, law, mrn):
         same = own[own["velocity"] == velocity]["energy_half"]
         if len(same):
             axes.axhline(same.mean(), color=colour, lw=0.8, ls=(0, (4, 2)))
-    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=mrn.replace("_", " "))
+    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=f"level: {cluster_text(mrn)}")
     axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))
     axes.legend(ncols=2)
     return figure

@@ -7,7 +7,33 @@ from ratd.pictures.style import GREY
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 
-__all__ = ["MRN_STYLE", "collisions_of", "colour_of", "label_of", "means", "plot_means", "radii_of", "radius_label"]
+__all__ = [
+    "LAWS",
+    "MRN_STYLE",
+    "cluster_text",
+    "collisions_of",
+    "colour_of",
+    "label_of",
+    "law_text",
+    "means",
+    "plot_means",
+    "radii_of",
+    "radius_label",
+]
+
+CLUSTERS = {
+    "353nm": "equal, 0.353 µm",
+    "314nm": "equal, 0.314 µm",
+    "314nm_giant": "equal, 0.314 µm,\nand one of 1.8 µm",
+    "mrn100_to_800": "MRN from 0.1 to 0.8 µm",
+    "mrn100_tree": "MRN above 0.1 µm, tree",
+    "mrn100": "MRN above 0.1 µm",
+    "mrn70": "MRN above 0.07 µm",
+    "mrn": "MRN, all",
+}
+"""Name in config/collision_study.yaml -> text."""
+LAWS = {"velocity": "friction by rate", "spring": "friction by springs"}
+"""Name of a law in the configs -> text."""
 
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
@@ -37,6 +63,16 @@ def radius_label(radius):
     return f"{radius * 1e6:.3g} µm"
 
 
+def cluster_text(name):
+    """Text for a cluster of the config."""
+    return CLUSTERS.get(name, str(name).replace("_", " "))
+
+
+def law_text(name):
+    """Text for a law of the config."""
+    return LAWS.get(name, f"law {name}")
+
+
 def collisions_of(files):
     """The table of all collisions, from the files of a job that draws a figure."""
     return io.read(files["table"], "collision_table").to_dataframe()
@@ -52,7 +88,7 @@ def label_of(table):
     one = table.iloc[0]
     if one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9):
         return radius_label(one["largest_radius"])
-    return str(one["cluster"]).replace("_", " ")
+    return cluster_text(one["cluster"])
 
 
 def is_equal(table):

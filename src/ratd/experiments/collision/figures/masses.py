@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
+from ratd.experiments.collision.figures.look import cluster_text
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -28,7 +29,7 @@ def masses(groups):
     panels = figure.subplots(1, len(groups), sharey=True, squeeze=False)[0]
     edges = np.geomspace(1e-4, 1.0, 81)
     for axes, (name, own) in zip(panels, groups.items(), strict=True):
-        axes.set_title(name.replace("_", " "), pad=2)
+        axes.set_title(cluster_text(name), pad=2)
         axes.set(xscale="log", xlabel="mass of a piece over that of both clusters", ylim=(0, 1.02))
         if not own:
             empty(axes, "no collisions")

@@ -2,19 +2,9 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import collisions_of, means
+from ratd.experiments.collision.figures.look import CLUSTERS, collisions_of, law_text, means
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, new_figure, styled
 
-CLUSTERS = {
-    "353nm": "equal, 0.353 µm",
-    "314nm": "equal, 0.314 µm",
-    "314nm_giant": "equal, 0.314 µm,\nand one of 1.8 µm",
-    "mrn100_to_800": "MRN from 0.1 to 0.8 µm",
-    "mrn100_tree": "MRN above 0.1 µm, tree",
-    "mrn100": "MRN above 0.1 µm",
-    "mrn": "MRN, all",
-}
-"""Name in config/collision_study.yaml -> text, from below."""
 LOOKS = {"velocity": ("#0072B2", "o"), "spring": ("#D55E00", "s")}
 QUANTITIES = {"X": "$X$", "N_s": "$N_\\mathrm{s}$", "N_s_rest": "$N_\\mathrm{s}$ of the rest"}
 
@@ -33,8 +23,8 @@ def question(table, velocities):
     Returns
     -------
     matplotlib.figure.Figure
-        Open markers are single collisions, filled ones means with a bar of one standard error. A short upright line
-        is what N_s cannot exceed.
+        Open markers are single collisions, filled ones means with a bar of one standard error. Short upright
+        lines, one a sample, are what N_s cannot exceed.
     """
     table = table[(table["impact_parameter"] == 0) & table["law"].isin(LOOKS)]
     names = [name for name in CLUSTERS if (table["cluster"] == name).any()]
@@ -55,15 +45,15 @@ def question(table, velocities):
                     _, mean, error = means(own, quantity)
                     axes.errorbar(mean, height, xerr=error, color=colour, marker=marker, ms=4.5, capsize=1.5)
                     if quantity == "N_s" and k == 0:
-                        most = 1 - own["largest_share"].mean()
-                        axes.plot([most, most], [place - 0.35, place + 0.35], color=HIGHLIGHT, lw=1.4, zorder=0)
+                        for share in own["largest_share"].unique():
+                            axes.plot([1 - share] * 2, [place - 0.35, place + 0.35], color=HIGHLIGHT, lw=1.4, zorder=0)
             axes.set(xlim=(-0.04, 1.04), ylim=(-0.6, len(names) - 0.4))
             axes.set_title(f"{text} at {velocity:g} m s$^{{-1}}$", pad=2)
         row[0].set_yticks(range(len(names)), [CLUSTERS[name] for name in names])
     for axes in panels[-1]:
         axes.set_xlabel("part of the mass")
     handles = [
-        axes.plot([], [], color=colour, marker=marker, ls="none", label=f"friction: {law}")[0]
+        axes.plot([], [], color=colour, marker=marker, ls="none", label=law_text(law))[0]
         for law, (colour, marker) in LOOKS.items()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=2)

@@ -45,7 +45,7 @@ def scaling(thresholds):
     for _, row in own.iterrows():
         colour = colour_of(row["radius"], RADII)
         face = FACES[row["friction"]] or colour
-        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"])), "D")
+        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"], atol=0.0)), "D")
         size = 6.5 if abs(row["surface_energy"] - 0.025) > 1e-6 else 4.0
         axes.errorbar(
             row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, ms=size,
@@ -64,7 +64,7 @@ def scaling(thresholds):
     handles += [
         Line2D([], [], ls="none", marker=marker, color="black", label=f"A = {time * 1e9:g} ns")
         for time, marker in MARKS.items()
-        if np.isclose(own["damping_time"], time).any()
+        if np.isclose(own["damping_time"], time, atol=0.0).any()
     ]
     handles += [
         Line2D([], [], ls="none", marker="o", color="black", mfc="white", label="springs"),

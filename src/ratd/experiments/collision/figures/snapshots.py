@@ -6,6 +6,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 from ratd.base.errors import InputError
+from ratd.experiments.collision.figures.look import cluster_text, law_text
 from ratd.pictures.spheres import render, scale_length, view_axes
 from ratd.pictures.style import TWO_COLUMNS, new_figure, styled
 from ratd.pipeline import io
@@ -51,10 +52,8 @@ def picture(row, spacing):
     time, place, _ = positions(row)
     radius = row["radius"].values
     wanted = [int(np.argmin(np.abs(time - spacing * k))) for k in range(PANELS)]
-    title = (
-        f"{row['cluster'].item()} at {row['velocity'].item():g} m s$^{{-1}}$, law {row['law'].item()}, "
-        f"rotation {row['seed'].item()}"
-    )
+    what = cluster_text(row["cluster"].item()), law_text(row["law"].item())
+    title = f"{what[0]} at {row['velocity'].item():g} m s$^{{-1}}$, {what[1]}, rotation {row['seed'].item()}"
     figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, title)
     panels = figure.subplots(2, PANELS // 2)
     scale = size_scale(radius)
