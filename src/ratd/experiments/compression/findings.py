@@ -38,6 +38,8 @@ LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
+TENSION_FROM = 0.05
+"""Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping")
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
@@ -200,8 +202,9 @@ def of_tension(entries):
                 found[f"tension_{way}.{key}"] = Measured(*mean_of((strength / formula)[here]))
                 found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
                 found[f"tension_{way}.n_{key}"] = int(here.sum())
-            if len(np.unique(phi[own])) > 1:
-                x, y, seed = np.log(phi[own] / 0.1), np.log(strength[own]), entries["seed"].values[own]
+            fitted = own & (phi >= TENSION_FROM)
+            if len(np.unique(phi[fitted])) > 1:
+                x, y, seed = np.log(phi[fitted]), np.log(strength[fitted]), entries["seed"].values[fitted]
                 found[f"tension_{way}.exponent_{rate:.0e}"] = _slope(x, y, seed)
     return found
 

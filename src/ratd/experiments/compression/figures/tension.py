@@ -54,7 +54,8 @@ def tension(entries, spun=None):
     axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$", ylabel=r"$S\,r_0/\gamma$")
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
-    axes.legend(loc="upper left")
+    axes.set_ylim(bottom=2e-5)
+    axes.legend(loc="lower right")
     return figure
 
 
