@@ -14,11 +14,14 @@ class Kept:
     path = "kept.nc"
 
     def __init__(self, *keys):
-        self.keys, self.rows, self.written = set(keys), [], 0
+        self.keys, self.rows, self.written, self.asked = set(keys), [], 0, 0
 
     def add(self, row):
         self.rows.append(row)
         self.keys.add(row)
+
+    def write_if_due(self):
+        self.asked += 1
 
     def write(self):
         self.written += 1
@@ -58,3 +61,11 @@ def test_no_row_is_begun_when_the_time_is_up():
 
 def test_keys_that_differ_by_rounding_are_the_same():
     assert key(0.1 + 0.2, 3) == key(0.3, 3.0) != key(0.3, 4)
+
+
+def test_a_table_that_gets_no_row_any_more_is_still_written():
+    first, second = Kept(), Kept()
+    tasks = [Task(first, key(0), partial(row, 0))]
+    tasks += [Task(second, key(number), partial(row, number)) for number in range(3)]
+    work(tasks, say=lambda text: None)
+    assert first.asked == second.asked == 4

@@ -19,7 +19,7 @@ from ratd.pipeline.provenance import canonical, settings_hash
 __all__ = ["Table", "Task", "command", "key", "state", "work"]
 
 WRITE_EVERY = 20.0
-"""Rows of a table that are finished within so long [s] are written together; a kill costs no more than that."""
+"""Rows of a table that are finished within so long [s] are written together; a kill costs no more than that and a row."""
 
 
 def key(*numbers):
@@ -68,7 +68,7 @@ class Table:
         return key(*(row[name].item() if name in row.variables else row.attrs[name] for name in self._key))
 
     def add(self, row):
-        """Put a row to the others, and write the file if that was not done just before.
+        """Put a row to the others; `write_if_due` writes the file.
 
         Of its attributes those stay that a file of the kind has, so that it is like one that was read.
         """
@@ -77,6 +77,9 @@ class Table:
         self.rows.append(row)
         self.keys.add(self.key_of(row))
         self._waiting = True
+
+    def write_if_due(self):
+        """Write the file if that was not done just before."""
         if time.monotonic() - self._written > WRITE_EVERY:
             self.write()
 
@@ -124,6 +127,7 @@ def work(tasks, *, until=None, say=print, processes=1):
         How many rows are left, those that failed among them.
     """
     left = [task for task in tasks if task.key not in task.table.keys]
+    tables = {id(task.table): task.table for task in left}.values()
     done = 0
     results = _one_by_one(left, until) if processes == 1 else _side_by_side(left, until, processes)
     try:
@@ -131,9 +135,12 @@ def work(tasks, *, until=None, say=print, processes=1):
             if row is not None:
                 task.table.add(row)
                 done += 1
+            # all of them: a table whose rows are all there gets no row more that would have it written
+            for table in tables:
+                table.write_if_due()
             say(f"{sentence}, {seconds:.0f} s, {len(left) - done} left")
     finally:
-        for table in {id(task.table): task.table for task in left}.values():
+        for table in tables:
             table.write()
     return len(left) - done
 
