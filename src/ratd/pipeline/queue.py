@@ -19,7 +19,7 @@ from ratd.pipeline.provenance import canonical, settings_hash
 __all__ = ["Table", "Task", "command", "key", "state", "work"]
 
 WRITE_EVERY = 20.0
-"""Rows of a table that are finished within so long [s] are written together; a kill costs no more than that and a row."""
+"""Rows of a table that are finished within so long [s] are written together; a kill costs little more than that."""
 
 
 def key(*numbers):
