@@ -115,7 +115,11 @@ def _largest(table):
     """``shares LAW CLUSTER``: parts of the mass in the largest sphere of each sample; ``ceilings``: one less that."""
     found = {}
     for (law, cluster), part in table.groupby(["law", "cluster"]):
+        found[f"samples {law} {cluster}"] = str(part["sample"].nunique())
         shares = np.sort(part.groupby("sample")["largest_share"].first().to_numpy())
+        for velocity, own in part[part["impact_parameter"] == 0].groupby("velocity"):
+            means = np.sort(own.groupby("sample")["X"].mean().to_numpy())
+            found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in means)
         for name, values_ in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
             ends = f"{values_[0]:.2f}" if len(values_) == 1 else f"{values_[0]:.2f} to {values_[-1]:.2f}"
             found[f"{name} {law} {cluster}"] = ends
@@ -208,12 +212,6 @@ def claims(table, thresholds, likeness):
         < mean("N_s", "velocity", "314nm", 30) - 0.1,
         "without giants MRN holds best": mean("X", "velocity", "mrn100_to_800", 15)
         > max(mean("X", "velocity", name, 15) for name in ("mrn100", "314nm", "314nm_giant")),
-        "without giants N_s of MRN is below that of equal spheres": mean("N_s", "velocity", "mrn100_to_800", 30)
-        < mean("N_s", "velocity", "314nm", 30) - 0.1,
-        "below the threshold MRN and 0.314 um are alike": abs(
-            mean("X", "velocity", "mrn100", 15) - mean("X", "velocity", "314nm", 15)
-        )
-        < 0.1,
         "one large sphere among equal ones has the same ceiling": mean("N_s", "velocity", "314nm_giant", 30) < 0.7,
         "at 30 m/s X of MRN is near the limit": mean("X", "velocity", "mrn100", 30) < 0.25,
         "the pair that held together had not finished": first("X_early", "velocity", "mrn", 30)
@@ -222,15 +220,20 @@ def claims(table, thresholds, likeness):
         > first("X", "velocity", "mrn", 30),
         "the smallest spheres glue": first("X", "velocity", "mrn", 15) > first("X", "velocity", "mrn100", 15) + 0.1
         and first("N_s", "velocity", "mrn", 30) < first("N_s", "velocity", "mrn100", 30) - 0.05,
-        "at 15 m/s the radius of the recipe breaks too easily": mean("X", "velocity", "353nm", 15)
-        < mean("X", "velocity", "mrn100", 15) - 0.1
-        and mean("N_s", "velocity", "353nm", 15) > mean("N_s", "velocity", "mrn100", 15) + 0.1,
+        "by X MRN without its smallest spheres is like 0.353 um": abs(
+            frag("velocity", "mrn100") - frag("velocity", "353nm")
+        )
+        < 3.0,
+        "by N_s it is not": all(
+            mean("N_s", "velocity", "353nm", speed) > mean("N_s", "velocity", "mrn100", speed) + 0.1
+            for speed in (15, 30)
+        ),
         "with springs it breaks less than MRN": mean("X", "spring", "353nm", 15) > mean("X", "spring", "mrn100", 15),
         "a giant breaks what is around it": mean("N_s_rest", "velocity", "314nm_giant", 30)
         > mean("N_s", "velocity", "314nm", 30) + 0.05,
-        "energy left rises with the radius at 20 and 30 m/s": all(
-            mean("energy_half", "velocity", "314nm", speed) < mean("energy_half", "velocity", "570nm", speed)
-            for speed in (20, 30)
+        "energy left rises with the radius": all(
+            np.all(np.diff([mean("energy_half", "velocity", f"{nm}nm", speed) for nm in (298, 353, 453, 570)]) > 0.0)
+            for speed in (10, 15, 20, 30)
         ),
         "with springs MRN comes apart at 15 m/s where 0.314 um holds": mean("X", "spring", "mrn100", 15)
         < 0.3
@@ -241,7 +244,7 @@ def claims(table, thresholds, likeness):
             for name, velocity in printed.items()
             if np.isfinite(frag("velocity", name))
         ),
-        "v_frag is about 19 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 22.5),
+        "v_frag is about 20 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 24.5),
         "v_frag over v_stick falls with A": bool(ratios.min() < 0.6 * at_half.min()),
         "a greater A brings them near": all(
             frag("velocity_1.0ns", name) < 1.2 * printed[name] and frag("velocity_1.5ns", name) > 0.8 * printed[name]
