@@ -10,6 +10,7 @@ from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.figures.look import is_equal
 from ratd.experiments.collision.figures.scaling import WIDEST
+from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
@@ -37,19 +38,6 @@ def cell(table, law, cluster, velocity, impact=0.0):
     """Collisions of one cell."""
     same = (table["law"] == law) & (table["cluster"] == cluster) & (table["impact_parameter"] == impact)
     return table[same & np.isclose(table["velocity"], velocity)]
-
-
-def mean_and_error(part, column):
-    """Mean of a column and its standard error; the error is NaN for a single collision.
-
-    Where there are several samples of a cluster the mean is that of their means, and the error is that over samples:
-    rotations of one sample are no draws of the law of the radii.
-    """
-    own = part.loc[part[column].notna(), ["sample", column]]
-    by_sample = own.groupby("sample")[column].mean()
-    single = by_sample if len(by_sample) > 1 else own[column]
-    mean = single.mean() if len(single) else np.nan
-    return mean, single.std(ddof=1) / np.sqrt(len(single)) if len(single) > 1 else np.nan
 
 
 def values(table, thresholds, likeness):

@@ -116,6 +116,19 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     return pd.Series(values | ends)
 
 
+def mean_and_error(part, column):
+    """Mean of a column and its standard error; the error is NaN for a single collision.
+
+    Where there are several samples of a cluster the mean is that of their means, and the error is that over samples:
+    rotations of one sample are no draws of the law of the radii.
+    """
+    own = part.loc[part[column].notna(), ["sample", column]]
+    by_sample = own.groupby("sample")[column].mean()
+    single = by_sample if len(by_sample) > 1 else own[column]
+    mean = single.mean() if len(single) else np.nan
+    return mean, single.std(ddof=1) / np.sqrt(len(single)) if len(single) > 1 else np.nan
+
+
 def bootstrap_means(table, column, velocities, count, rng):
     """Means of a column at some velocities, drawn anew.
 

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
+from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.pictures.style import GREY
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -97,17 +98,16 @@ def is_equal(table):
 
 
 def means(table, quantity):
-    """Mean of a quantity at each velocity with its standard error.
+    """Mean of a quantity at each velocity with its standard error: over samples of a cluster where there are several.
 
     Returns
     -------
     velocity, mean, error : (k,) arrays
         The error is 0 where there is one collision.
     """
-    groups = table.groupby("velocity")[quantity]
-    mean, count = groups.mean(), groups.count()
-    error = (groups.std(ddof=1) / np.sqrt(count)).fillna(0.0)
-    return mean.index.to_numpy(), mean.to_numpy(), error.to_numpy()
+    found = [(velocity, *mean_and_error(own, quantity)) for velocity, own in table.groupby("velocity")]
+    velocity, mean, error = (np.array(column, dtype=float) for column in zip(*found, strict=True))
+    return velocity, mean, np.nan_to_num(error)
 
 
 def plot_means(axes, table, quantity, label, **style):
