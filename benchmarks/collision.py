@@ -21,7 +21,6 @@ from ratd.validation.peer_lammps import Spheres, dmt_coefficients
 VELOCITY, SEED = 30.0, 1
 STEP, EQUAL_STEP = 2e-12, 20e-12
 """Steps [s] of MRN and of equal spheres, those of docs/collision.md."""
-VISCOUS_TIME = 0.5e-9
 CLUSTER_RADIUS, NUMBER = 4e-6, 5000
 EQUAL_RADIUS, EQUAL_NUMBER = 0.314e-6, 613
 CLASSES = 4
@@ -57,7 +56,7 @@ def measure(out, *, number, steps, duration, about, say):
     cluster = build(mrn(number, SEED, **limits))
     rows = [{"what": f"building a cluster of {number} MRN spheres", "seconds": time.perf_counter() - begun}]
     for code, friction, run in (("ratd", "velocity", _ratd), ("ratd", "none", _ratd), ("LAMMPS", "none", _lammps)):
-        law = dmt(friction=friction, viscous_time=VISCOUS_TIME)
+        law = dmt(friction=friction)
         seconds, made, contacts = run(at_rest(cluster, law), law, steps)
         ns = 1e9 * seconds / made / contacts
         row = {"what": "MRN", "code": code, "friction": friction, "ns_per_contact_step": ns, "steps": made}
@@ -102,6 +101,5 @@ def _equal(duration):
     """Seconds of a collision of two clusters of equal spheres."""
     cluster = build_cluster(np.full(EQUAL_NUMBER, EQUAL_RADIUS), CLUSTER_RADIUS, second_contact=0.5, seed=SEED)
     begun = time.perf_counter()
-    law = dmt(viscous_time=VISCOUS_TIME)
-    collide(cluster, cluster, VELOCITY, seed=SEED, law=law, duration=duration, timestep=EQUAL_STEP)
+    collide(cluster, cluster, VELOCITY, seed=SEED, duration=duration, timestep=EQUAL_STEP)
     return time.perf_counter() - begun

@@ -203,12 +203,11 @@ def call_line(typingctx, numbers, at):
 
     def generate(context, builder, signature, arguments):
         data, at = _data(context, builder, signature, arguments)
-        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
-        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        byte, number = ir.IntType(8), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte.as_pointer(), number, number, number])
         prefetch = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
         to_read, second_level, data_not_code = number(0), number(2), number(1)
-        place = builder.bitcast(builder.gep(data, [at]), byte)
-        builder.call(prefetch, [place, to_read, second_level, data_not_code])
+        builder.call(prefetch, [_pointer(builder, data, at, byte), to_read, second_level, data_not_code])
         return context.get_dummy_value()
 
     return signature, generate

@@ -108,8 +108,8 @@ def _largest(table):
         for velocity, own in part[part["impact_parameter"] == 0].groupby("velocity"):
             means = np.sort(own.groupby("sample")["X"].mean().to_numpy())
             found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in means)
-        for name, values_ in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
-            ends = f"{values_[0]:.2f}" if len(values_) == 1 else f"{values_[0]:.2f} to {values_[-1]:.2f}"
+        for name, parts in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
+            ends = f"{parts[0]:.2f}" if len(parts) == 1 else f"{parts[0]:.2f} to {parts[-1]:.2f}"
             found[f"{name} {law} {cluster}"] = ends
     return found
 
@@ -128,10 +128,8 @@ def _exponents(thresholds):
         ("energy", "surface_energy", own[np.isclose(own["radius"], RADII[-1])]),
     ):
         for word, column in (("", "velocity"), (" stick", "sticking_velocity")):
-            line, cover = np.polyfit(np.log(part[x]), np.log(part[column]), 1, cov="unscaled")
-            left = np.log(part[column]) - np.polyval(line, np.log(part[x]))
-            error = np.sqrt(cover[0, 0] * np.sum(left**2) / max(len(part) - 2, 1))
-            found[f"exponent {name}{word}"] = with_error(line[0], error, 1)
+            line, cover = np.polyfit(np.log(part[x]), np.log(part[column]), 1, cov=True)
+            found[f"exponent {name}{word}"] = with_error(line[0], np.sqrt(cover[0, 0]), 1)
     return found
 
 

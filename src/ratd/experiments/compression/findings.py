@@ -21,6 +21,7 @@ from ratd.experiments.compression.strength import (
     fit_power_law,
     fit_with_limit,
     log_slope,
+    of_means,
     overtakes,
     phi_at,
     ratio_at,
@@ -165,7 +166,8 @@ def of_steps(tables):
             found[f"{name}.over_{column}"] = Measured(*mean_of(own / other[same]))
         for value in STEPS_AT:
             own, other = (_near(each, value) for each in (table, explicit))
-            found[f"{name}.over_pressure_{value:g}"] = _ratio_of_means(own, other[same])
+            both = np.stack([own, other[same]], axis=1)
+            found[f"{name}.over_pressure_{value:g}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
         found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
     return found
 
@@ -174,12 +176,6 @@ def _near(table, phi):
     """Pressures of single clusters near a filling factor, (seeds,)."""
     k = _bin_at(table, phi)
     return table["pressure"].values[:, k - 2 : k + 3].mean(axis=1)
-
-
-def _ratio_of_means(own, other):
-    """Mean over mean of the same clusters, with the error of leaving one out at a time."""
-    left = [np.delete(own, k).mean() / np.delete(other, k).mean() for k in range(len(own))]
-    return Measured(float(own.mean() / other.mean()), jackknife_error(np.array(left)))
 
 
 def _bin_at(table, phi):

@@ -17,6 +17,7 @@ __all__ = [
     "fit_power_law",
     "fit_with_limit",
     "mean_pressure",
+    "of_means",
     "phi_at",
     "rates",
     "ratio_at",
@@ -47,8 +48,8 @@ class Fit(NamedTuple):
     n: int
 
 
-def _fitted(pressure, fit):
-    """A `Fit` of ``fit(mean pressure)``, with pressures (seeds, bins)."""
+def of_means(pressure, fit):
+    """A `Fit` of ``fit(mean pressure)``, with pressures (seeds, bins), or other numbers of each seed."""
     n = len(pressure)
     value = np.atleast_1d(fit(pressure.mean(axis=0)))
     if n < 2:
@@ -97,7 +98,7 @@ def fit_power_law(table, low=FIT_RANGE[0], high=FIT_RANGE[1]):
         slope, constant = np.polyfit(x, y, 1)
         return np.array([3.0 + slope, np.exp(constant), np.exp(y.mean())])
 
-    return _fitted(ratio, fit)
+    return of_means(ratio, fit)
 
 
 def fit_with_limit(table, low=LIMIT_RANGE[0], high=LIMIT_RANGE[1]):
@@ -117,14 +118,14 @@ def fit_with_limit(table, low=LIMIT_RANGE[0], high=LIMIT_RANGE[1]):
         slope, constant = np.polyfit(1.0 / phi, y, 1, w=1.0 / y)
         return np.array([slope**-3.0, -slope / constant])
 
-    return _fitted(pressure, fit)
+    return of_means(pressure, fit)
 
 
 def ratio_at(table, phi):
     """P/(P_0 phi^3) near a filling factor, `Fit` of one number."""
     phi, pressure = _within(table, phi / NEAR, phi * NEAR)
     ratio = pressure / table["rolling_pressure"].values[0] / phi**3
-    return _fitted(ratio, np.mean)
+    return of_means(ratio, np.mean)
 
 
 def scatter_at(table, phi):
@@ -161,7 +162,7 @@ def phi_at(table, pressure, high=0.45):
         rising = np.maximum.accumulate(np.maximum(mean, 1e-300))
         return np.exp(np.interp(np.log(pressure), np.log(rising), np.log(phi)))
 
-    return _fitted(all_pressures, fit)
+    return of_means(all_pressures, fit)
 
 
 def rates(table, ways):

@@ -9,7 +9,7 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 
 __all__ = [
-    "LAWS",
+    "CLUSTERS",
     "MRN_STYLE",
     "cluster_text",
     "collisions_of",
