@@ -3,10 +3,12 @@ import numpy as np
 from ratd.base.jit import jit
 from ratd.base.vectors import (
     add4,
+    greater4,
     load4,
     multiply4,
     next4,
     numbers4,
+    root_of_sum,
     scale4,
     square4,
     store4,
@@ -26,14 +28,16 @@ def all_of_them(a, b, out):
     store4(out, np.uint64(12), swap4(x))
     store4(out, np.uint64(16), next4(x))
     store4(out, np.uint64(20), vector4(fourth, third, second, first))
-    return square4(x)
+    store4(out, np.uint64(24), greater4(x, y))
+    return square4(x), root_of_sum(multiply4(x, x))
 
 
 def test_vectors_of_four_numbers():
     rng = np.random.default_rng(3)
-    a, b, out = rng.normal(size=6), rng.normal(size=7), np.full(25, np.nan)
-    square = all_of_them(a, b, out)
+    a, b, out = rng.normal(size=6), rng.normal(size=7), np.full(29, np.nan)
+    square, root = all_of_them(a, b, out)
     x, y = a[1:5], b[2:6]
-    wanted = [x + y, x * y, 3.0 * x, [x[1], x[0], 0.0, 0.0], x[[1, 2, 0, 3]], x[::-1]]
-    np.testing.assert_array_equal(out[:24], np.concatenate(wanted))
-    assert np.isnan(out[24]) and square == x[0] ** 2 + x[1] ** 2 + x[2] ** 2
+    wanted = [x + y, x * y, 3.0 * x, [x[1], x[0], 0.0, 0.0], x[[1, 2, 0, 3]], x[::-1], np.maximum(x, y)]
+    np.testing.assert_array_equal(out[:28], np.concatenate(wanted))
+    assert np.isnan(out[28]) and square == x[0] ** 2 + x[1] ** 2 + x[2] ** 2
+    assert root == np.sqrt(square)

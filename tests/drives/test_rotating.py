@@ -54,7 +54,7 @@ def test_free_monomer_goes_straight_in_the_inertial_frame():
         monomer, force = free_monomer(x_0, v, w_0), np.zeros(layout.FORCE_ROW)
         for step in range(steps):
             omega, domega = angular_velocity(drive, step * dt)
-            kick_and_drift(monomer, force, 1, dt, dt, omega, domega, 0.0, drive)
+            kick_and_drift(monomer, force, 1, dt, dt, omega, domega, 0.0, drive, True)
         t = steps * dt
         tau = OMEGA_RAT / 3e16
         angle = OMEGA_RAT * (t + tau * math.expm1(-t / tau))
@@ -71,7 +71,7 @@ def test_literal_frame_lacks_torque_and_spin_terms():
     assert not literal.torque and not literal.spin_terms and literal.explicit_coriolis
     assert not rotating("literal", omega_1=1e8, angular_acceleration=1e15, coriolis="exact").explicit_coriolis
     monomer, force = free_monomer([1e-7, 0, 0], [0, 0, 0], [1e7, 0, 0]), np.zeros(layout.FORCE_ROW)
-    kick_and_drift(monomer, force, 1, 1e-12, 1e-12, 1e9, 1e15, 0.0, literal)
+    kick_and_drift(monomer, force, 1, 1e-12, 1e-12, 1e9, 1e15, 0.0, literal, True)
     np.testing.assert_array_equal(monomer[8:11], [1e7, 0, 0])
     np.testing.assert_allclose(monomer[4:7], [1e18 * 1e-7 * 1e-12, -1e15 * 1e-7 * 1e-12, 0.0], rtol=1e-12)
 
@@ -86,7 +86,7 @@ def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
         start = omega * 1e-7 * np.array([np.sin(back), -np.cos(back), 0.0])
         monomer, force = free_monomer([1e-7, 0, 0], start, [0, 0, 0]), np.zeros(layout.FORCE_ROW)
         for _ in range(100_000):
-            kick_and_drift(monomer, force, 1, dt, dt, omega, 0.0, 0.0, drive)
+            kick_and_drift(monomer, force, 1, dt, dt, omega, 0.0, 0.0, drive, True)
         speeds[coriolis] = np.hypot(monomer[0], monomer[1]) / 1e-7
     # the exact one is of second order: an acceleration of 0.4 (omega dt)^2 of the centrifugal one is left
     assert speeds["exact"] == pytest.approx(1.0, abs=0.05)
@@ -107,3 +107,37 @@ def test_explicit_coriolis_feeds_energy_and_the_exact_one_does_not():
 def test_bad_drives_are_refused_in_one_sentence(arguments, words):
     with pytest.raises(InputError, match=words):
         rotating(**{"omega_1": 1e8, "epsilon": 0.02} | arguments)
+
+
+@pytest.mark.parametrize("name", ["prescribed", "literal"])
+def test_a_grain_in_one_piece_moves_as_one_whose_monomers_are_asked(name):
+    drive = rotating(name, omega_1=1e8, epsilon=0.02)
+    rng = np.random.default_rng(4)
+    n = 7
+    rows, forces = rng.normal(size=(n, layout.ROW)), rng.normal(size=(n, layout.FORCE_ROW))
+    rows[:, int(layout.STILL)] = forces[:, 3] = forces[:, 7] = 0.0
+    rows[:, int(layout.DRIVEN)] = 1.0
+    found = []
+    for whole in (True, False):
+        monomer, force = rows.ravel().copy(), forces.ravel().copy()
+        sums = kick_and_drift(monomer, force, n, 0.02, 0.03, 1.5, 0.3, 0.2, drive, whole)
+        assert not force.any()
+        found.append(np.concatenate([monomer, sums]))
+    np.testing.assert_array_equal(*found)
+    speed = np.linalg.norm(found[0][:-3].reshape(n, -1)[:, 4:7], axis=1).max()
+    assert speed <= found[0][-1] <= np.sqrt(3.0) * speed
+
+
+def test_what_the_drive_does_not_act_on_is_left_out_of_its_sums():
+    """The second of two monomers has left: the torque turns the first alone, and only that one is summed."""
+    drive = rotating("prescribed", omega_1=1e8, epsilon=0.02)
+    rows = np.random.default_rng(5).normal(size=(2, layout.ROW))
+    rows[:, int(layout.STILL)] = 0.0
+    rows[:, int(layout.DRIVEN)] = [1.0, 0.0]
+    alone, both = rows[0].copy(), rows.ravel().copy()
+    moved = [
+        kick_and_drift(monomer, np.zeros(layout.FORCE_ROW * n), n, 0.02, 0.03, 1.5, 0.3, 0.2, drive, n == 1)
+        for n, monomer in ((1, alone), (2, both))
+    ]
+    np.testing.assert_array_equal(both[: layout.ROW], alone)
+    assert moved[0][:2] == moved[1][:2] and moved[1][2] >= moved[0][2]

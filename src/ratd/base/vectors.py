@@ -5,9 +5,13 @@ are padded to eight (`ratd.engine.block_factor`). The compiler does not find tha
 as those of the drives, so they say it.
 """
 
+import math
+
 from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic, models, register_model
+
+from ratd.base.jit import jit
 
 _INDEX = ir.IntType(32)
 
@@ -162,6 +166,16 @@ def square4(typingctx, vector):
 
 
 @intrinsic
+def greater4(typingctx, a, b):
+    """The greater of two vectors, lane by lane; that of `b` where a number is NaN."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.select(builder.fcmp_ordered(">", *arguments), *arguments)
+
+    return VECTOR4(VECTOR4, VECTOR4), generate
+
+
+@intrinsic
 def numbers4(typingctx, vector):
     """The four numbers of a vector, a tuple."""
 
@@ -170,6 +184,17 @@ def numbers4(typingctx, vector):
         return context.make_tuple(builder, signature.return_type, lanes)
 
     return types.UniTuple(types.float64, 4)(VECTOR4), generate
+
+
+@jit
+def root_of_sum(squares):
+    """sqrt(x + y + z) of (x, y, z, .).
+
+    Of the greatest squares of three components that is a bound on the length of every vector, and at most sqrt(3) times
+    the greatest one; the sum has to be made only once.
+    """
+    x, y, z, _ = numbers4(squares)
+    return math.sqrt(x + y + z)
 
 
 @intrinsic

@@ -16,7 +16,7 @@ longest_step(state)
     Longest step [s] that the drive allows an integrator that chooses its step by the motion.
 move(state, box, kick, dt)
     Change the velocities by the forces in `state.force`, acting for ``kick``, then the positions by these for ``dt``;
-    clear the forces, and leave the greatest speed in `FASTEST`, or NaN after a failure.
+    clear the forces, and leave a bound on the greatest speed in `FASTEST`, or NaN after a failure.
 
 What a drive keeps stands in `state.drive`; the first number is its clock, in which `Until.clock` is told.
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ratd.base.jit import jit
 from ratd.base.parts import part
-from ratd.base.vectors import add4, load4, multiply4, scale4, square4, store4, vector4
+from ratd.base.vectors import add4, greater4, load4, multiply4, root_of_sum, scale4, store4, vector4
 from ratd.engine.layout import (
     FASTEST, FORCE_ROW, FORCE_X, INV_INERTIA, INV_MASS, MONOMERS, ROW, TORQUE_X, VX, WX, X,
 )  # fmt: skip
@@ -52,12 +52,11 @@ class Free(NamedTuple):
 
 @jit
 def _move(state, drag, kick, dt):
-    """Kick and drift all monomers, and clear the forces; `FASTEST` is the greatest speed, NaN after a failure."""
+    """Kick and drift all monomers, and clear the forces; `FASTEST` is NaN after a failure."""
     monomer, force = state.monomer, state.force
     keep = math.exp(-drag * kick)
     nothing = vector4(0.0, 0.0, 0.0, 0.0)
-    fastest = 0.0
-    total = 0.0
+    most, total = nothing, nothing
     # lanes x, y, z; the fourth of the positions is the radius, of the spins DRIVEN, and both stay
     braked = vector4(keep, keep, keep, 1.0)
     for k in range(state.counter[MONOMERS]):
@@ -72,10 +71,10 @@ def _move(state, drag, kick, dt):
         store4(monomer, r + WX, w)
         store4(force, q + FORCE_X, nothing)
         store4(force, q + TORQUE_X, nothing)
-        square = square4(v)
-        fastest = max(fastest, square)
-        total += square
-    state.scalar[FASTEST] = math.sqrt(fastest) if total < np.inf else math.nan
+        squares = multiply4(v, v)
+        most = greater4(squares, most)
+        total = add4(total, squares)
+    state.scalar[FASTEST] = root_of_sum(most) if root_of_sum(total) < np.inf else math.nan
 
 
 def free():

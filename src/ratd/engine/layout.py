@@ -24,7 +24,7 @@ SCALARS = (
     "dt_drift "  # with which the positions were last moved [s]
     "lost_damp lost_slide lost_roll lost_twist "  # dissipated by contacts that are gone [J]
     "lost_made lost_broken "  # radiated where contacts jump in, and what broken ones still held [J]
-    "fastest "  # greatest speed after the last step [m/s]
+    "fastest "  # no monomer is faster after the last step [m/s]; at most sqrt(3) times the greatest speed
     "dt_contacts "  # the step that the contacts allow [s]
     "stretch "  # greatest change of a compression in the last step, where the integrator looks at it [m]
     "virial_xx virial_yy virial_zz virial_xy virial_xz virial_yz"  # sum of d_a F_b over contacts, last step [J]
