@@ -72,6 +72,17 @@ def test_both_codes_drive_a_grain_from_the_first_omega_on():
     assert 0.7 < high[1] / high[0] < 1.4
 
 
+def test_a_grain_that_breaks_at_the_first_omega_is_driven_from_a_lower_one():
+    grain = ratd.grow("BA", 60e-9, "q-S", 0)
+    state = relax(grain)
+    # a cut of the grain cannot hold at 1.8 times this
+    unit = 2.0 * cut_bound(grain)
+    held = large._driven_from_below(lambda: large.InRatd(state, 0.125), unit, 0.9)
+    assert held[0, 3] == 1.0 and held[0, 0] < 0.9 * unit
+    low, high = threshold(held[:, 0], held[:, 3], 0.75)
+    assert high == pytest.approx(low * large.STEP)
+
+
 def rows_of_check(cut, omega, break_at, code):
     return [
         {

@@ -9,8 +9,9 @@ grains of the check against LAMMPS (config/validation.yaml, `ratd.validation.lam
 made here: what LAMMPS found stands in docs/validation/data/lammps.nc. The others (`LARGE`) LAMMPS drives in its turning
 frame as there, with epsilon = ln(`STEP`)/(2 pi `ROTATIONS`), and ratd in the inertial frame in the same steps of omega.
 To be affordable it is different in two ways: the first step has `FIRST` times the omega at which the spin-up of
-production loses its first mass, and the spheres stand in `CLASSES` classes of radius, one atom type each. `CONTROLS`
-are grains of lammps.nc that are driven once more in this way.
+production loses its first mass (and `FIRST` times as much where a grain has lost mass there already), and the spheres
+stand in `CLASSES` classes of radius, one atom type each. `CONTROLS` are grains of lammps.nc that are driven once more
+in this way.
 """
 
 import sys
@@ -220,10 +221,19 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES):
     for code, make in makers.items():
         with make() as example:
             timestep = example.timestep
-        held = np.array(driven(make, unit, STEP, ROTATIONS, first))
+        held = _driven_from_below(make, unit, first)
         number = np.full(len(held), CODES.index(code))
         parts.append((number, held[:, 0], held[:, 3], np.full(len(held), timestep)))
     return dict(zip(_HOLD, map(np.concatenate, zip(*parts, strict=True)), strict=True))
+
+
+def _driven_from_below(make, unit, first):
+    """Holds of `driven`, the first of which the grain survives whole."""
+    while True:
+        held = np.array(driven(make, unit, STEP, ROTATIONS, first))
+        if held[0, 3] >= MARKS["first loss"]:
+            return held
+        first *= FIRST
 
 
 def thresholds(folder, check):
