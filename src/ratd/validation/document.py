@@ -17,7 +17,7 @@ from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
-from ratd.validation import figures, findings, lammps_findings, quasi_static_document
+from ratd.validation import figures, findings, lammps_findings, lammps_spin_up, quasi_static_document
 from ratd.validation.tables import CASE, as_dataset
 
 __all__ = ["collect", "main", "read_data", "redraw", "values"]
@@ -133,6 +133,7 @@ def read_data(folder="."):
     """The tables behind the page, name of a check -> pandas.DataFrame."""
     data = Path(folder, DATA)
     tables = {check: io.read(data / f"{check}.nc", f"validation_{check}").to_dataframe() for check in CHECKS}
+    tables["lammps_spin_up"] = lammps_spin_up.thresholds(Path(folder, lammps_spin_up.DATA), tables["lammps"])
     scheme = Path(folder, quasi_static_document.DATA)
     return (
         tables
@@ -147,6 +148,7 @@ def values(tables):
     for check in (*CHECKS, "reference", "balance"):
         of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
         found |= of(tables[check])
+    found |= lammps_spin_up.findings(tables["lammps_spin_up"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
     found |= {f"scheme.{name}": value for name, value in scheme.items()}
     worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
@@ -172,6 +174,7 @@ def numbers(tables):
     return {
         "pull_off": pairs,
         "lammps": lammps_findings.thresholds(tables["lammps"]),
+        "lammps_spin_up": lammps_spin_up.one_each(tables["lammps_spin_up"]),
         "growth": pd.DataFrame(findings.grown(tables["growth"])),
         "migration": pd.DataFrame(findings.migrations(tables["growth"])),
         "energy": findings.balances(tables["energy"]),
@@ -188,7 +191,7 @@ def redraw(folder=".", into=None):
     tables = read_data(folder)
     drawn = {
         "pull_off": figures.apart(tables["pull_off"]),
-        "lammps": lammps_findings.beside(tables["lammps"]),
+        "lammps": lammps_findings.beside(tables["lammps"], lammps_spin_up.one_each(tables["lammps_spin_up"])),
         "steps": figures.steps(tables["energy_step"], tables["frames"]),
         "theory": figures.bounds(tables["theory"]),
         "damping": figures.viscous_time(tables["damping"]),

@@ -26,7 +26,9 @@ SHOWN = {
     "sudden turning": "at once,\nturning\nframe",
     "driven": "driven",
     "elastic": "driven,\nrolling\nunlimited",
+    "default": "driven\nover\ndefault",
 }
+"""Way, or "default" for driven in LAMMPS over the spin-up of production in ratd -> its label."""
 assert set(COMPARISONS) == {way[1:] for way in WAYS}
 
 
@@ -103,9 +105,22 @@ def of_lammps(table):
 
 
 @styled
-def beside(table):
-    """Figure: LAMMPS over ratd, a sign a grain, for each way and both marks."""
-    found = thresholds(table)
+def beside(table, default):
+    """Figure: LAMMPS over ratd, a sign a grain, for each way and both marks.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `ratd.validation.lammps`.
+    default : pandas.DataFrame
+        The grains beside the spin-up of production, of `ratd.validation.lammps_spin_up.thresholds`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    default = default.assign(way="default", ratio=default["LAMMPS"] / default["waits"])
+    found = pd.concat([thresholds(table), default])
     figure = new_figure(
         TWO_COLUMNS, 0.4 * TWO_COLUMNS, "Angular velocity at which a grain comes apart: LAMMPS over ratd"
     )

@@ -41,7 +41,7 @@ from ratd.validation import peer_lammps
 from ratd.validation.lammps import MARKS, TURNING, InLammps, InRatd, driven, threshold
 from ratd.validation.plan import Checks
 
-__all__ = ["CONTROLS", "DATA", "KIND", "LARGE", "both", "findings", "main", "spun", "tasks", "thresholds"]
+__all__ = ["CONTROLS", "DATA", "KIND", "LARGE", "both", "findings", "main", "one_each", "spun", "tasks", "thresholds"]
 
 CONFIG = ("config/validation.yaml",)
 DATA = "docs/validation/data/lammps_spin_up"
@@ -60,8 +60,11 @@ LARGE = tuple((material, kind, 200, 0) for material in ("co-S", "a-C") for kind 
 )
 """Material, type, size [nm] and seed of the grains that are driven in LAMMPS here, beside `CONTROLS`."""
 CONTROLS = tuple(("q-S", kind, 200, 0) for kind in TYPES)
+NEAR = 0.05
+"""Part by which the median of LAMMPS may be off the spin-up of production, see `findings`."""
 CODES = ("ratd", "LAMMPS")
 """Who drives; the flag in a file is the place in this list."""
+_GRAIN_AND_MARK = ["material", "type", "a_eff", "seed", "mark"]
 _HOLD = ("code", "omega", "mass_left", "timestep")
 _OMEGA = {"first loss": "omega_first_loss", "25 % of the mass": "omega_mass_75"}
 """Mark of `MARKS` -> the same of a spin-up."""
@@ -306,6 +309,11 @@ def _marks(grain, types, held, mark):
     return kept | {"mark": mark, "types": types, "waits": grain[_OMEGA[mark]]} | middle
 
 
+def one_each(table):
+    """Rows of `thresholds`, of a grain that was driven with both sorts of types those of own types alone."""
+    return table.sort_values("types", ascending=False, kind="stable").drop_duplicates(_GRAIN_AND_MARK)
+
+
 def findings(table):
     """What a document says of it.
 
@@ -322,10 +330,10 @@ def findings(table):
         over ratd driven alike; with ``waits`` behind it, of ratd driven over the spin-up of production. Errors by
         bootstrap over grains, of at least three; ``GROUP MARK grains`` is their number. Of a grain that was driven with
         both sorts of types that with own types counts, and ``classes MARK`` is the greatest difference of the other.
+        ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``.
     """
-    keys = ["material", "type", "a_eff", "seed", "mark"]
     table = table.assign(size=[f"{size / NM:.0f} nm" for size in table["a_eff"]])
-    one = table.sort_values("types", ascending=False, kind="stable").drop_duplicates(keys)
+    keys, one = _GRAIN_AND_MARK, one_each(table)
     values = {
         "lammps_spin_up.grains": len(one.drop_duplicates(keys[:-1])),
         "lammps_spin_up.most monomers": int(one["n_monomers"].max()),
@@ -345,6 +353,8 @@ def findings(table):
         if {"own", "classes"} <= set(both_types):
             differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()
             values[f"lammps_spin_up.classes {short}"] = float(differs)
+    off = abs(values["lammps_spin_up.all first"].value - 1.0)
+    values |= {"limit.median": NEAR, "lammps_spin_up.verdict": "met" if off < NEAR else "open"}
     return values
 
 

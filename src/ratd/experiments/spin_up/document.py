@@ -63,8 +63,8 @@ TABLE_COLUMNS = (
     "material", "type", "a_eff", "seed", "n_monomers", "n_contacts", "filling_factor", "mean_monomer_radius",
     "cut_bound", "omega_first_loss", "omega_mass_75", "omega_disr",
 )  # fmt: skip
-LAMMPS = "validation/data/tables/lammps.csv"
-"""Below docs, written by docs/validation.md."""
+LAMMPS = {"driven": "validation/data/tables/lammps.csv", "default": "validation/data/tables/lammps_spin_up.csv"}
+"""Spin-up of ratd beside LAMMPS -> table below docs, written with docs/validation.md."""
 RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
@@ -92,8 +92,8 @@ class Data(NamedTuple):
         Of figure 10.
     pulled : pandas.DataFrame
         Grains that were pulled apart.
-    lammps : pandas.DataFrame
-        Thresholds of both codes, from the validation.
+    lammps : dict of str to pandas.DataFrame
+        Thresholds of both codes, from the validation, see `LAMMPS`.
     studies : dict
         See `ratd.experiments.spin_up.findings.studies.studies`.
     """
@@ -109,7 +109,7 @@ class Data(NamedTuple):
     tables: dict
     pairs: list
     pulled: pd.DataFrame
-    lammps: pd.DataFrame
+    lammps: dict
     studies: dict
 
 
@@ -174,7 +174,7 @@ def read_data(data=DATA):
         tables=tables,
         pulled=read_pulled(data / "pulled"),
         studies=studies(data, files, printed),
-        lammps=pd.read_csv(data.parents[1] / LAMMPS),
+        lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
@@ -208,7 +208,7 @@ def findings(data, fits):
     printed = load(*CONFIGS).config["literal"]
     values["p.acceleration"] = printed["angular_acceleration"]
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
-    values |= beside.of_lammps(data.lammps)
+    values |= beside.of_lammps(**data.lammps)
     values |= of_studies(data.studies)
     values |= of_exponents(data.fragments[DRIVEN])
     values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)

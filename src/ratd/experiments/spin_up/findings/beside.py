@@ -110,12 +110,29 @@ def recomputed(older, newer):
     return {"check.n": len(pairs), "check.ratio": median(pairs[MARK] / pairs[f"{MARK}_older"])}
 
 
-def of_lammps(table):
-    """LAMMPS over ratd, medians over grains, from the table of docs/validation.md."""
-    values = {"lammps.grains": len(table.drop_duplicates(["material", "type", "a_eff", "seed"]))}
-    for (way, mark), part in table.groupby(["way", "mark"]):
-        values[f"lammps.{way} {mark}"] = median(part["ratio"])
-        values[f"lammps.{way} {mark} range"] = f"{part['ratio'].min():.2f} to {part['ratio'].max():.2f}"
+def of_lammps(driven, default):
+    """LAMMPS over ratd, medians over grains, from the tables of docs/validation.md.
+
+    Parameters
+    ----------
+    driven : pandas.DataFrame
+        Grains that both codes turn in some ways.
+    default : pandas.DataFrame
+        Grains that LAMMPS drives, beside their spin-up that waits in ratd.
+
+    Returns
+    -------
+    dict
+    """
+    values = {}
+    ways = pd.concat([driven, default.assign(way="default", ratio=default["LAMMPS"] / default["waits"])])
+    for (way, mark), part in ways.dropna(subset="ratio").groupby(["way", "mark"]):
+        values |= {
+            f"lammps.{way} {mark}": median(part["ratio"]),
+            f"lammps.{way} {mark} range": f"{part['ratio'].min():.2f} to {part['ratio'].max():.2f}",
+            f"lammps.{way} {mark} grains": len(part),
+            f"lammps.{way} {mark} largest": part["a_eff"].max() / NM,
+        }
     return values
 
 
