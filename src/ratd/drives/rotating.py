@@ -14,8 +14,8 @@ from ratd.base.jit import jit
 from ratd.base.parts import part
 from ratd.base.vectors import add4, greater4, load4, multiply4, numbers4, root_of_sum, scale4, store4, swap4, vector4
 from ratd.drives.largest import (
-    ACCELERATION, ANGULAR_MOMENTUM, EXCESS, FRAGMENTS, GREATEST, OMEGA, OWN_INERTIA, TORQUE_WORK, UNWIND, centre, drop_departed,
-    follow_largest, sample_stress, turn_to_take_out, work_of_torque,
+    ACCELERATION, ANGULAR_MOMENTUM, EXCESS, FRAGMENTS, GREATEST, OMEGA, OWN_INERTIA, TORQUE_WORK, UNWIND, centre,
+    drop_departed, follow_largest, sample_stress, turn_to_take_out, work_of_torque,
 )  # fmt: skip
 from ratd.engine.layout import (
     DRIVEN, FASTEST, FORCE_ROW, FORCE_X, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, STEPS, TIME, TORQUE_X,
