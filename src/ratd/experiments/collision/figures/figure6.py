@@ -19,11 +19,13 @@ from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_RADII, RADII
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
+WHOLE = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
+"""How the cluster with all its spheres looks."""
 BESIDE = sorted({radius for radius, _ in PRINTED_RADII.values()})
 
 
 @styled
-def figure6(table, law, mrn):
+def figure6(table, law, mrn, whole=None):
     """X and N_s of an MRN cluster, a mark a collision, and means of equal spheres of the radii that it is likened to.
 
     Parameters
@@ -32,6 +34,8 @@ def figure6(table, law, mrn):
         `ratd.experiments.collision.tables.COLUMNS`.
     law, mrn : str
         Names of the law and of the MRN cluster in the config.
+    whole : str, optional
+        Name of the same cluster with all its spheres, where some were left out.
 
     Returns
     -------
@@ -53,6 +57,10 @@ def figure6(table, law, mrn):
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
         plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=4)
+        uncut = table[table["cluster"] == whole]
+        if len(uncut):
+            axes.plot(uncut["velocity"], uncut[quantity], ls="none", marker=".", color=WHOLE["color"], ms=4, zorder=3)
+            plot_means(axes, uncut, quantity, cluster_text(whole), **WHOLE, zorder=5)
         velocity_axis(axes, own)
         axes.set_ylim(-0.03, 1.03)
     sticking_line(left, STICKING)
@@ -68,4 +76,4 @@ def figure6(table, law, mrn):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure6(collisions_of(files), settings["law"], settings["mrn"])
+    return figure6(collisions_of(files), settings["law"], settings["mrn"], settings.get("whole"))
