@@ -222,10 +222,12 @@ def claims(table, thresholds, likeness):
         > 0.8
         > 0.3
         > first("X", "velocity", "mrn", 30),
-        "with all spheres MRN holds together better than the smallest radius": mean("X", "velocity", "mrn", 15)
+        "with all spheres MRN breaks less than the smallest radius": mean("X", "velocity", "mrn", 15)
         > mean("X", "velocity", "298nm", 15) + 0.05
         and mean("N_s", "velocity", "mrn", 20) < mean("N_s", "velocity", "298nm", 20) - 0.1,
         "with all spheres it comes apart at 30 m/s": mean("X", "velocity", "mrn", 30) < 0.15,
+        "with all spheres its v_frag is like that of 0.298 um": abs(frag("velocity", "mrn") - frag("velocity", "298nm"))
+        < 3.0,
         "the smallest spheres glue": mean("X", "velocity", "mrn", 15) > mean("X", "velocity", "mrn100", 15) + 0.1
         and mean("N_s", "velocity", "mrn", 20) < mean("N_s", "velocity", "mrn100", 20) - 0.1
         and mean("energy_half", "velocity", "mrn", 15) < 0.8 * mean("energy_half", "velocity", "mrn100", 15),
