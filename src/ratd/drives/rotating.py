@@ -102,7 +102,7 @@ class Rotating(NamedTuple):
         drive, scalar = state.drive, state.scalar
         omega, domega, unwind = drive[OMEGA], drive[ACCELERATION], drive[UNWIND]
         monomer, force, n = state.monomer, state.force, state.counter[MONOMERS]
-        # chosen here, so that a grain in one piece, for which it is far shorter, does not ask for each monomer
+        # chosen here, so that the loop over a grain in one piece does not ask each monomer
         if drive[FRAGMENTS] == 1.0:
             sums = kick_and_drift(monomer, force, n, kick, dt, omega, domega, unwind, self, True)
         else:

@@ -69,6 +69,8 @@ COLUMNS = {
     "mass_left": ("1", "mass of the largest fragment over that of the grain at the end"),
 }
 KIND = table_kind("lammps", "ratd beside LAMMPS", COLUMNS)
+GRAIN = ["material", "type", "a_eff", "seed"]
+"""Columns that say which grain."""
 MARKS = {"first loss": 1.0 - 1e-9, "25 % of the mass": 0.75}
 """A grain has come apart when its largest fragment holds less than this part of the mass."""
 PARTS = 8

@@ -5,11 +5,10 @@ import pandas as pd
 
 from ratd.base.measured import median
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, styled
-from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, MARKS, TURNING, threshold
+from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, GRAIN, MARKS, TURNING, threshold
 
 __all__ = ["beside", "of_lammps", "thresholds"]
 
-GRAIN = ["material", "type", "a_eff", "seed"]
 FORCE = 1e-9
 """Difference of the normal forces over F_C."""
 NEAR = 0.15
@@ -113,13 +112,12 @@ def beside(table, default):
     table : pandas.DataFrame
         Of `ratd.validation.lammps`.
     default : pandas.DataFrame
-        The grains beside the spin-up of production, of `ratd.validation.lammps_spin_up.thresholds`.
+        The grains beside the spin-up of production, of `ratd.validation.lammps_spin_up.one_each`.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    default = default.assign(way="default", ratio=default["LAMMPS"] / default["waits"])
     found = pd.concat([thresholds(table), default])
     figure = new_figure(
         TWO_COLUMNS, 0.4 * TWO_COLUMNS, "Angular velocity at which a grain comes apart: LAMMPS over ratd"

@@ -38,7 +38,7 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 from ratd.validation import peer_lammps
-from ratd.validation.lammps import MARKS, TURNING, InLammps, InRatd, driven, threshold
+from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driven, threshold
 from ratd.validation.plan import Checks
 
 __all__ = ["CONTROLS", "DATA", "KIND", "LARGE", "both", "findings", "main", "one_each", "spun", "tasks", "thresholds"]
@@ -64,7 +64,6 @@ NEAR = 0.05
 """Part by which the median of LAMMPS may be off the spin-up of production, see `findings`."""
 CODES = ("ratd", "LAMMPS")
 """Who drives; the flag in a file is the place in this list."""
-_GRAIN_AND_MARK = ["material", "type", "a_eff", "seed", "mark"]
 _HOLD = ("code", "omega", "mass_left", "timestep")
 _OMEGA = {"first loss": "omega_first_loss", "25 % of the mass": "omega_mass_75"}
 """Mark of `MARKS` -> the same of a spin-up."""
@@ -310,8 +309,12 @@ def _marks(grain, types, held, mark):
 
 
 def one_each(table):
-    """Rows of `thresholds`, of a grain that was driven with both sorts of types those of own types alone."""
-    return table.sort_values("types", ascending=False, kind="stable").drop_duplicates(_GRAIN_AND_MARK)
+    """Rows of `thresholds` with their ``ratio``, LAMMPS over the spin-up of production, as the ``way`` "default".
+
+    Of a grain that was driven with both sorts of types those of own types alone.
+    """
+    one = table.sort_values("types", ascending=False, kind="stable").drop_duplicates([*GRAIN, "mark"])
+    return one.assign(way="default", ratio=one["LAMMPS"] / one["waits"])
 
 
 def findings(table):
@@ -333,9 +336,9 @@ def findings(table):
         ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``.
     """
     table = table.assign(size=[f"{size / NM:.0f} nm" for size in table["a_eff"]])
-    keys, one = _GRAIN_AND_MARK, one_each(table)
+    one = one_each(table)
     values = {
-        "lammps_spin_up.grains": len(one.drop_duplicates(keys[:-1])),
+        "lammps_spin_up.grains": len(one.drop_duplicates(GRAIN)),
         "lammps_spin_up.most monomers": int(one["n_monomers"].max()),
     }
     groups = {"all": one}
@@ -345,11 +348,11 @@ def findings(table):
         for name, group in groups.items():
             own = group[group["mark"] == mark]
             slot = f"lammps_spin_up.{name} {short}"
-            values[slot] = median(own["LAMMPS"] / own["waits"])
+            values[slot] = median(own["ratio"])
             values[f"{slot} driven"] = median(own["LAMMPS"] / own["ratd"])
             values[f"{slot} waits"] = median(own["ratd"] / own["waits"])
-            values[f"{slot} grains"] = int(np.isfinite(own["LAMMPS"] / own["waits"]).sum())
-        both_types = table[table["mark"] == mark].pivot_table(index=keys[:-1], columns="types", values="LAMMPS")
+            values[f"{slot} grains"] = int(np.isfinite(own["ratio"]).sum())
+        both_types = table[table["mark"] == mark].pivot_table(index=GRAIN, columns="types", values="LAMMPS")
         if {"own", "classes"} <= set(both_types):
             differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()
             values[f"lammps_spin_up.classes {short}"] = float(differs)

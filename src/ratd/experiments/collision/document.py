@@ -89,9 +89,9 @@ def values(table, thresholds, likeness):
 
 
 def _one_pair(table):
-    """Values of the first rotation of the first sample alone: ``first X velocity mrn 30``, and how many are of MRN."""
+    """Values of the first rotation of the first sample alone: ``first X velocity mrn 30``."""
     first = table[(table["impact_parameter"] == 0) & (table["seed"] == 0) & (table["sample"] == 1)]
-    found = {"n all spheres": str(int((table["cluster"] == "mrn").sum()))}
+    found = {}
     for row in first.to_dict("records"):
         for column in COLUMNS:
             key = f"first {column} {row['law']} {row['cluster']} {row['velocity']:g}"

@@ -43,7 +43,7 @@ def figure6(table, law, mrn, whole=None):
         The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
-    own, equal = table[table["cluster"] == mrn], table[is_equal(table)]
+    own, uncut, equal = table[table["cluster"] == mrn], table[table["cluster"] == whole], table[is_equal(table)]
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(own):
@@ -57,7 +57,6 @@ def figure6(table, law, mrn, whole=None):
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
         plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=4)
-        uncut = table[table["cluster"] == whole]
         if len(uncut):
             axes.plot(uncut["velocity"], uncut[quantity], ls="none", marker=".", color=WHOLE["color"], ms=4, zorder=3)
             plot_means(axes, uncut, quantity, cluster_text(whole), **WHOLE, zorder=5)

@@ -125,8 +125,7 @@ def of_lammps(driven, default):
     dict
     """
     values = {}
-    ways = pd.concat([driven, default.assign(way="default", ratio=default["LAMMPS"] / default["waits"])])
-    for (way, mark), part in ways.dropna(subset="ratio").groupby(["way", "mark"]):
+    for (way, mark), part in pd.concat([driven, default]).dropna(subset="ratio").groupby(["way", "mark"]):
         values |= {
             f"lammps.{way} {mark}": median(part["ratio"]),
             f"lammps.{way} {mark} range": f"{part['ratio'].min():.2f} to {part['ratio'].max():.2f}",
