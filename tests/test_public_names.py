@@ -63,6 +63,13 @@ def test_every_public_name_has_a_type():
     assert set(ratd.__all__) <= names
 
 
+def test_every_public_name_is_on_the_page_of_python():
+    text = (ROOT / "docs" / "api.md").read_text()
+    shown = {line.removeprefix("::: ").rpartition(".")[2] for line in text.splitlines() if line.startswith("::: ")}
+    assert set(ratd.__all__) - {"laws"} <= shown
+    assert set(ratd.laws.__all__) <= shown
+
+
 def test_the_version_is_the_same_everywhere():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["version"] == ratd.__version__ and citation["license"] == "MIT"

@@ -12,10 +12,9 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.errors import FileError
-from ratd.experiments.collision.tables import collision_table
 from ratd.pictures.style import save
 from ratd.pipeline import io
-from ratd.pipeline.atomic import atomic, write_text
+from ratd.pipeline.atomic import write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import figures, findings, lammps_findings, lammps_spin_up, quasi_static_document
 from ratd.validation.tables import CASE, as_dataset
@@ -41,7 +40,7 @@ FROM_PHI = 0.1
 
 
 def collect(results, folder="."):
-    """Take the pieces of the checks that a folder of results has, and the balances of compressions and collisions.
+    """Take the pieces of the checks that a folder of results has.
 
     Parameters
     ----------
@@ -63,8 +62,6 @@ def collect(results, folder="."):
         if paths:
             kind, target = f"validation_{check}", folder / DATA / f"{check}.nc"
             io.write(target, merged(target, paths, kind), kind)
-    with atomic(folder / DATA / "balance.csv") as temporary:
-        balance(folder).to_csv(temporary, index=False, float_format="%.4g")
 
 
 def merged(target, paths, kind):
@@ -120,8 +117,10 @@ def balance(folder):
             continue
         name = "compression" if explicit else "long steps"
         rows.append({"experiment": name, "set": path.stem, "runs": len(part), "worst": np.nanmax(part)})
-    collisions = collision_table(
-        path for path in sorted(Path(folder).glob(COLLISION)) if path.parent.name != "pictures"
+    collisions = pd.concat(
+        io.read(path, "collisions")[["friction", "balance"]].to_dataframe()
+        for path in sorted(Path(folder).glob(COLLISION))
+        if path.parent.name != "pictures"
     )
     for friction, part in collisions.groupby("friction"):
         name = "springs" if friction == "spring" else "collision"
@@ -137,7 +136,7 @@ def read_data(folder="."):
     scheme = Path(folder, quasi_static_document.DATA)
     return (
         tables
-        | {name: pd.read_csv(data / f"{name}.csv") for name in ("reference", "balance")}
+        | {"reference": pd.read_csv(data / "reference.csv"), "balance": balance(folder)}
         | {name: pd.read_csv(scheme / f"{name}.csv") for name in quasi_static_document.CHECKS}
     )
 

@@ -115,10 +115,11 @@ def findings(table, looks):
             values[f"{row['vary']} {row['value']:g} {row['type']} {row['mark']}"] = _text(row)
     size_class = pd.cut(table["a_eff"] / NM, [0, *(high for _, high in CLASSES.values())], labels=list(CLASSES))
     table = table.assign(size_class=size_class)
-    fine = pd.concat(
-        [shifts(table, by=("type", "size_class")), shifts(table.assign(type="all"), by=("type", "size_class"))]
-    )
-    every_class = fine[fine[["vary", "value"]].apply(tuple, axis=1).isin(STEADY)]
+    of_scheme = table[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) | (table["vary"] == PRODUCTION)
+    every_class = shifts(table[of_scheme], by=("type", "size_class"))
+    together = shifts(table[of_scheme], marks=("omega_mass_75",), by=("size_class",))
+    values["together"] = (together["median"] - 1.0).abs().max()
+    values["together known"] = together["error"].max()
     fine = every_class[every_class["error"] < KNOWN]
     values["classes"] = len(fine[fine["mark"] == "omega_mass_75"])
     for mark in MARKS:
@@ -126,6 +127,9 @@ def findings(table, looks):
         off = (part["median"] - 1.0).abs()
         worst = part.loc[off.idxmax()]
         values[f"worst {mark}"] = Measured(off.max(), worst["error"])
+    unsure = every_class[(every_class["mark"] == "omega_mass_75") & (every_class["error"] >= KNOWN)]
+    farthest = unsure.loc[(unsure["median"] - 1.0).abs().idxmax()]
+    values["unsure"] = Measured(farthest["median"] - 1.0, farthest["error"])
     ba = _paired(table[is_hard(table)], own, "stretch", 1e-14)
     values["BA differ"] = ((ba["omega_mass_75"] / ba["omega_mass_75_own"] - 1.0).abs() > 0.01).mean()
     values["all classes"] = int((every_class["mark"] == "omega_mass_75").sum())
