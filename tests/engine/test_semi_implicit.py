@@ -8,7 +8,9 @@ from ratd.base.materials import MATERIALS
 from ratd.drives.free import free, rest
 from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.semi_implicit import RUNG, _work, make_matrix, rung_below, semi_implicit, weigh
+from ratd.engine.semi_implicit import (
+    RUNG, TURNED, _work, add_turns, contact_speeds, make_matrix, rung_below, semi_implicit, weigh,
+)  # fmt: skip
 from ratd.engine.state import contact_field, copied, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, periodic, touching_pairs
@@ -218,3 +220,76 @@ def test_spheres_land_with_a_small_overlap(gap):
     assert (np.array(overlap[:-1]) < 0.0).all() and 0.0 < overlap[-1] <= 2.001e-10
     state, _ = run(state, LAW, free(), BOX, integrator, until(steps=int(state.counter[0]) + 1))
     assert state.scalar[DT] * 3.0 < 3e-10
+
+
+def two_clusters():
+    """The cluster twice, out of reach of each other, as two fragments."""
+    one = cluster()
+    rows, n = monomer_rows(one), one.counter[CONTACTS]
+    position = np.vstack([rows[:, X : X + 3], rows[:, X : X + 3] + [1e-6, 0.0, 0.0]])
+    pairs = np.array([one.pair_i[:n], one.pair_j[:n]], dtype=np.int64).T
+    both = np.vstack([pairs, pairs + N])
+    state = new_state(position, np.tile(rows[:, RADIUS], 2), MATERIALS["q-S"], both, LAW, BOX, leapfrog())
+    state.fragment[N:] = 1
+    return state
+
+
+def weighed(state, work):
+    """Random forces after `weigh`."""
+    force = state.force.reshape(-1, FORCE_ROW)[: 2 * N]
+    force[:] = 0.0
+    pulls = np.random.default_rng(3).normal(size=(2 * N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
+    force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
+    weigh(state, 0.0, 3e-11, work)
+    return force.copy()
+
+
+def test_the_part_of_a_fragment_that_has_turned_is_made_anew_and_no_other():
+    state = two_clusters()
+    work = _work(state)
+    make_matrix(state, LAW, BOX, 0.5, 3e-11, work)
+    before = weighed(state, work)
+    turned = rolled(state)  # the contacts of both
+    work.turned[1] = 2 * TURNED
+    make_matrix(turned, LAW, BOX, 0.5, 3e-11, work)
+    found = weighed(turned, work)
+    fresh = _work(turned)
+    make_matrix(turned, LAW, BOX, 0.5, 3e-11, fresh)
+    wanted = weighed(turned, fresh)
+    np.testing.assert_array_equal(found[:N], before[:N])
+    np.testing.assert_array_equal(found[N:], wanted[N:])
+    assert np.abs(wanted[:N] - before[:N]).max() > 1e-3 * np.abs(before[:N]).max()
+    assert (work.turned == 0.0).all()
+
+
+def test_angles_are_counted_for_each_fragment():
+    state = two_clusters()
+    rows = monomer_rows(state)
+    rows[N:, VX : VX + 3] = np.cross([0.0, 0.0, 2e6], rows[N:, X : X + 3] - rows[N, X : X + 3])
+    work = _work(state)
+    greatest, stretching = contact_speeds(state, LAW, work.turn_rate)
+    assert work.turn_rate[0] == 0.0 and 0.0 < work.turn_rate[1] <= 2e6
+    assert add_turns(work, 1e-9) == work.turned[1] == pytest.approx(1e-9 * work.turn_rate[1])
+    assert greatest > 0.0 and stretching < 1e-9 * greatest
+
+
+def test_a_monomer_that_touches_its_own_copy_is_weighed_too():
+    """One sphere in a box of 1.98 radii: a row, in which copies cannot recede but by sliding, which a spin makes."""
+    radius = 30e-9
+    box = periodic((1.99 * radius, 1e-6, 1e-6))
+    state = new_state(
+        np.zeros((1, 3)), np.array([radius]), MATERIALS["q-S"], touching_pairs(np.zeros((1, 3)), np.array([radius]), box),
+        LAW, box, leapfrog(),
+    )  # fmt: skip
+    assert state.counter[CONTACTS] == 1
+    work = _work(state)
+    dt = 3e-11
+    make_matrix(state, LAW, box, 0.5, dt, work)
+    row = monomer_rows(state)[0]
+    _, k_s, _, _ = LAW.stiffness(state.contact, np.uint64(0))
+    inertia = 0.4 * row[MASS] * radius**2
+    # both surfaces move against each other by w times the distance of the centres
+    slow = inertia + 0.5 * dt**2 * k_s * (1.99 * radius) ** 2
+    state.force[4:7] = 1e-20
+    weigh(state, 0.0, dt, work)
+    np.testing.assert_allclose(state.force[4:7], 1e-20 * inertia / np.array([inertia, slow, slow]), rtol=1e-9)

@@ -171,6 +171,7 @@ def order_blocks(n, pair_i, pair_j, pairs):
 def _adjacency(n, pair_i, pair_j, pairs):
     """Neighbours of each row without repetition: (n + 1,) starts, and their numbers."""
     count = np.zeros(n + 1, dtype=np.int64)
+    # what touches a copy of itself is not its own neighbour: the marks below leave it out, twice in the same place here
     for k in range(pairs):
         count[np.int64(pair_i[k]) + 1] += 1
         count[np.int64(pair_j[k]) + 1] += 1
@@ -180,8 +181,8 @@ def _adjacency(n, pair_i, pair_j, pairs):
     for k in range(pairs):
         i, j = np.int64(pair_i[k]), np.int64(pair_j[k])
         near[filled[i]] = j
-        near[filled[j]] = i
         filled[i] += 1
+        near[filled[j]] = i
         filled[j] += 1
     mark = np.full(n, -1, dtype=np.int64)
     kept = 0
@@ -217,12 +218,15 @@ def find_block(factor, i, j):
 
 
 @jit
-def factorise(factor):
+def factorise(factor, chosen):
     """Turn the matrix in `diagonal` and `lower` into the inverse of D and L.
 
     Parameters
     ----------
     factor : BlockFactor
+    chosen : (n,) bool
+        Places of the rows to treat, the others being factorised already: all, or those of parts that share no block with
+        the others that is not 0.
 
     Returns
     -------
@@ -242,19 +246,27 @@ def factorise(factor):
     inverse = np.zeros(BLOCK)
     work = np.zeros((SIDE, SIDE))
     for j in range(n):
+        if not chosen[j]:
+            continue
         if not _invert(diagonal, BLOCK * j, inverse, work):
             return False
         begin, end = first[j], first[j + 1]
         for a in range(begin, end):
+            if not chosen[rows[a]]:
+                continue
             for c in range(BLOCK):
                 kept[BLOCK * (a - begin) + c] = lower[BLOCK * a + c]
             _times(lower, np.uint64(BLOCK * a), kept, np.uint64(BLOCK * (a - begin)), inverse)
         for a in range(begin, end):
             column = rows[a]
+            if not chosen[column]:
+                continue
             source = np.uint64(BLOCK * (a - begin))
             _take_product(diagonal, np.uint64(BLOCK * column), lower, np.uint64(BLOCK * a), kept, source)
             target = first[column]
             for b in range(a + 1, end):
+                if not chosen[rows[b]]:
+                    continue
                 while rows[target] != rows[b]:
                     target += 1
                 _take_product(lower, np.uint64(BLOCK * target), lower, np.uint64(BLOCK * b), kept, source)

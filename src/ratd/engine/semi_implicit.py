@@ -14,6 +14,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
+from ratd.base.vectors import add8, load8, multiply8, spread8, store8
 from ratd.engine.block_factor import BLOCK, PADDED, BlockFactor, factorise, find_block, order_blocks, solve
 from ratd.engine.contacts import contact_start, difference, get_image
 from ratd.engine.forces import contact_forces
@@ -30,12 +31,15 @@ RUNG = math.sqrt(0.5)
 CLIMB_AFTER = 8
 """Steps on a rung before the next longer one is tried."""
 TURNED = 0.005
-"""Angle [rad] by which a contact may have turned since the matrix was made."""
+"""Angle [rad] by which a contact may have turned since the matrix of its fragment was made."""
 SPHERE = 0.4
 """Moment of inertia of a sphere over m a^2."""
 
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
+_PADDED = np.uint64(PADDED)
+_NORMAL, _TWIST, _OF_I, _OF_J = (np.uint64(PADDED * row) for row in (0, 1, 2, 4))
+_FROM_I_TO_J = np.uint64(2 * PADDED)
 
 
 class Work(NamedTuple):
@@ -45,14 +49,22 @@ class Work(NamedTuple):
     ----------
     factor : BlockFactor
     block : (contacts,) int64
-        Number of the block of each contact, and whether its rows are those of i: twice the number plus 0 or 1.
+        Number of the block of each contact, and whether its rows are those of i: twice the number plus 0 or 1. -1 where
+        a monomer touches a copy of itself.
     x : (8 n,) float64
         The right-hand side, and the solution.
     strain : (8 n,) float64
         What M' - M makes of the motion of the box: sum J^T (theta dt^2 K + dt C) H d over the contacts [kg m/s].
     made : (2,) float64
-        Step [s] for which the matrix was made, 0 when it has to be made anew; angle [rad] by which a contact may have
-        turned since.
+        Step [s] for which the matrix was made, 0 when it has to be made anew; the greatest of `turned`.
+    turned : (n,) float64
+        Angle [rad] by which a contact of each fragment may have turned since its part of the matrix was made.
+    turn_rate : (n,) float64
+        Angular velocity [rad/s] of the contact of each fragment that turns fastest.
+    chosen : (n,) bool
+        Places of the fragments whose part is made anew.
+    rows : (48,) float64
+        Space for one contact, see `_write_rows`.
     count : (1,) int64
         Steps since the last change of the step's length.
     """
@@ -62,6 +74,10 @@ class Work(NamedTuple):
     x: np.ndarray
     strain: np.ndarray
     made: np.ndarray
+    turned: np.ndarray
+    turn_rate: np.ndarray
+    chosen: np.ndarray
+    rows: np.ndarray
     count: np.ndarray
 
 
@@ -135,8 +151,8 @@ class SemiImplicit(NamedTuple):
 
     def limit(self, state, law, drive, box, far, least, work):
         scalar = state.scalar
-        greatest, turning, stretching = contact_speeds(state, law)
-        work.made[1] += turning * scalar[DT_DRIFT]
+        greatest, stretching = contact_speeds(state, law, work.turn_rate)
+        work.made[1] = add_turns(work, scalar[DT_DRIFT])
         scalar[STRETCH] = stretching * scalar[DT_DRIFT]
         speed = max(greatest / self.displacement, scalar[FASTEST] / self.travel)
         allowed = min(self.longest, drive.longest_step(state))
@@ -166,14 +182,21 @@ def _work(state):
     factor = order_blocks(n, state.pair_i, state.pair_j, contacts)
     block = np.empty(contacts, dtype=np.int64)
     _find_blocks(state, factor, block)
-    return Work(factor, block, np.zeros(PADDED * n), np.zeros(PADDED * n), np.zeros(2), np.zeros(1, dtype=np.int64))
+    return Work(
+        factor, block, np.zeros(PADDED * n), np.zeros(PADDED * n), np.zeros(2), np.zeros(n), np.zeros(n),
+        np.zeros(n, dtype=np.bool_), np.zeros(6 * PADDED), np.zeros(1, dtype=np.int64),
+    )  # fmt: skip
 
 
 @jit
 def _find_blocks(state, factor, block):
     """Find the block of each contact; False when one has none."""
     for k in range(block.shape[0]):
-        at, turned = find_block(factor, np.int64(state.pair_i[k]), np.int64(state.pair_j[k]))
+        i, j = np.int64(state.pair_i[k]), np.int64(state.pair_j[k])
+        if i == j:
+            block[k] = -1
+            continue
+        at, turned = find_block(factor, i, j)
         if at < 0:
             return False
         block[k] = 2 * at + turned
@@ -188,7 +211,10 @@ def _renewed(state, work):
         block = np.empty(contacts, dtype=np.int64)
         if _find_blocks(state, work.factor, block):
             work.made[0] = 0.0
-            return Work(work.factor, block, work.x, work.strain, work.made, work.count)
+            return Work(
+                work.factor, block, work.x, work.strain, work.made, work.turned, work.turn_rate, work.chosen, work.rows,
+                work.count,
+            )  # fmt: skip
     fresh = _work(state)
     fresh.count[:] = work.count
     return fresh
@@ -198,7 +224,7 @@ def _renewed(state, work):
 # one than a process that loads it, which rounds differently.
 @jit(forceinline=True)
 def make_matrix(state, law, box, theta, dt, work):
-    """Make M' and factorise it.
+    """Make M' and factorise it; where it is there for this step, the parts of those fragments that have turned.
 
     Parameters
     ----------
@@ -219,26 +245,33 @@ def make_matrix(state, law, box, theta, dt, work):
 
     In a box that changes with H the velocities are peculiar, and the points recede by H d as well. M' needs it not,
     but calming does: else it would slow down rigid bodies, which move against the box.
+
+    Fragments share no contact, so each has a part of the matrix that is made and factorised by itself. Most parts
+    that are made anew are those of small pieces that spin away.
     """
-    factor, strain = work.factor, work.strain
+    factor, strain, chosen, turned, rows = work.factor, work.strain, work.chosen, work.turned, work.rows
     diagonal, lower = factor.diagonal, factor.lower
-    strain[:] = 0.0
-    diagonal[:] = 0.0
-    lower[:] = 0.0
+    whole = work.made[0] != dt
     for i in range(state.counter[MONOMERS]):
-        m = state.monomer[np.uint64(i) * _ROW + MASS]
-        at = BLOCK * factor.place[i]
-        for c in range(3):
-            diagonal[at + (PADDED + 1) * c] = m
-            diagonal[at + (PADDED + 1) * (c + 3)] = SPHERE * m
+        p = factor.place[i]
+        chosen[p] = whole or turned[state.fragment[i]] > TURNED
+        if chosen[p]:
+            strain[PADDED * p : PADDED * (p + 1)] = 0.0
+            diagonal[BLOCK * p : BLOCK * (p + 1)] = 0.0
+            lower[BLOCK * factor.first[p] : BLOCK * factor.first[p + 1]] = 0.0
+            m = state.monomer[np.uint64(i) * _ROW + MASS]
+            for c in range(3):
+                diagonal[BLOCK * p + (PADDED + 1) * c] = m
+                diagonal[BLOCK * p + (PADDED + 1) * (c + 3)] = SPHERE * m
     edges = box.edges(state.scalar)
     hx, hy, hz = box.rates()
     changing = hx != 0.0 or hy != 0.0 or hz != 0.0
     weight = theta * dt * dt
-    block = np.empty((6, 6))
     for k in range(state.counter[CONTACTS]):
-        at = contact_start(law, k)
         i, j = np.int64(state.pair_i[k]), np.int64(state.pair_j[k])
+        if not chosen[factor.place[i]]:
+            continue
+        at = contact_start(law, k)
         n = (state.contact[at + NCX], state.contact[at + NCY], state.contact[at + NCZ])
         a_i = state.monomer[np.uint64(i) * _ROW + RADIUS]
         a_j = state.monomer[np.uint64(j) * _ROW + RADIUS]
@@ -248,18 +281,27 @@ def make_matrix(state, law, box, theta, dt, work):
         k_n, k_s, k_r, k_t = law.stiffness(state.contact, at)
         k_n = weight * k_n + dt * law.damping_now(state.contact, at)
         k_s, k_r, k_t = weight * k_s, weight * k_r, weight * k_t
-        _blocks(block, n, k_n, k_s, k_r / (a_i * a_i), k_t / (a_i * a_i), 1.0, 1.0, arm_i, arm_i)
-        _add_block(diagonal, BLOCK * factor.place[i], block, False)
-        _blocks(block, n, k_n, k_s, k_r / (a_j * a_j), k_t / (a_j * a_j), -1.0, -1.0, arm_j, arm_j)
-        _add_block(diagonal, BLOCK * factor.place[j], block, False)
-        _blocks(block, n, k_n, k_s, -k_r / (a_i * a_j), -k_t / (a_i * a_j), 1.0, -1.0, arm_i, arm_j)
-        _add_block(lower, BLOCK * (work.block[k] // 2), block, work.block[k] % 2 == 0)
+        _write_rows(rows, n, arm_i, arm_j)
+        own_i, own_j = np.uint64(BLOCK * factor.place[i]), np.uint64(BLOCK * factor.place[j])
+        both = -1.0 / (a_i * a_j)
+        _add_block(diagonal, own_i, rows, _OF_I, _OF_I, k_n, k_s, k_r / (a_i * a_i), k_t / (a_i * a_i))
+        _add_block(diagonal, own_j, rows, _OF_J, _OF_J, k_n, k_s, k_r / (a_j * a_j), k_t / (a_j * a_j))
+        if i == j:
+            _add_block(diagonal, own_i, rows, _OF_I, _OF_J, -k_n, k_s, k_r * both, k_t * both)
+            _add_block(diagonal, own_i, rows, _OF_J, _OF_I, -k_n, k_s, k_r * both, k_t * both)
+        else:
+            of_row, of_column = (_OF_I, _OF_J) if work.block[k] % 2 == 1 else (_OF_J, _OF_I)
+            shared = np.uint64(BLOCK * (work.block[k] // 2))
+            _add_block(lower, shared, rows, of_row, of_column, -k_n, k_s, k_r * both, k_t * both)
         if changing:
             recede = (hx * dx, hy * dy, hz * dz)
             _add_strain(strain, PADDED * factor.place[i], recede, n, k_n, k_s, 1.0, arm_i)
             _add_strain(strain, PADDED * factor.place[j], recede, n, k_n, k_s, -1.0, arm_j)
-    if not factorise(factor):
+    if not factorise(factor, chosen):
         state.scalar[FASTEST] = math.nan
+    for i in range(state.counter[MONOMERS]):
+        if chosen[factor.place[i]]:
+            turned[state.fragment[i]] = 0.0
     work.made[0], work.made[1] = dt, 0.0
 
 
@@ -298,31 +340,61 @@ def arms(n, a_i, p_i, a_j, p_j, distance):
 
 
 @jit(forceinline=True)
-def _blocks(block, n, k_n, k_s, k_r, k_t, sign_i, sign_j, arm_i, arm_j):
-    """J_i^T K J_j of one contact, rows of i, with J = (sign, P [arm x]) and the stiffness of the spins added.
+def _write_rows(rows, n, arm_i, arm_j):
+    """Write what the motion of i and j does at their contact: rows of J, each for six unknowns, padded to eight.
 
-    P = 1 - n n^T. With t = n x arm, P [arm x] = [arm x] - n t^T.
+    With the tangents e1, e2 of the direction n these are n for the velocity (from `_NORMAL` on), n for the spin (from
+    `_TWIST`), and for each monomer (+-e1, e1 x arm) and (+-e2, e2 x arm), from `_OF_I` and `_OF_J`: P [arm x] is the
+    sum over the tangents of e (e x arm)^T.
     """
-    t_i, t_j = _cross(n, arm_i), _cross(n, arm_j)
-    dot = arm_i[0] * arm_j[0] + arm_i[1] * arm_j[1] + arm_i[2] * arm_j[2]
-    for r in range(3):
+    first, second = tangents(n)
+    for c in range(3):
+        rows[_NORMAL + np.uint64(c)] = rows[_TWIST + np.uint64(c + 3)] = n[c]
+    q = _OF_I
+    for e in (first, second):
+        turn_i, turn_j = _cross(e, arm_i), _cross(e, arm_j)
         for c in range(3):
-            along = n[r] * n[c]
-            across = (1.0 if r == c else 0.0) - along
-            block[r, c] = sign_i * sign_j * (k_n * along + k_s * across)
-            # [arm_i x]^T P [arm_j x]
-            slide = (dot if r == c else 0.0) - arm_j[r] * arm_i[c] - t_i[r] * t_j[c]
-            block[r + 3, c + 3] = k_s * slide + k_r * across + k_t * along
-            # sign_i P [arm_j x], and sign_j of the transposed P [arm_i x]
-            block[r, c + 3] = -sign_i * k_s * n[r] * t_j[c]
-            block[r + 3, c] = -sign_j * k_s * t_i[r] * n[c]
-    # [arm x] itself
-    for r in range(3):
-        c, d = (r + 1) % 3, (r + 2) % 3
-        block[r, 3 + c] -= sign_i * k_s * arm_j[d]
-        block[r, 3 + d] += sign_i * k_s * arm_j[c]
-        block[3 + c, r] -= sign_j * k_s * arm_i[d]
-        block[3 + d, r] += sign_j * k_s * arm_i[c]
+            axis, spin = np.uint64(c), np.uint64(c + 3)
+            rows[q + axis], rows[q + spin] = e[c], turn_i[c]
+            rows[q + _FROM_I_TO_J + axis], rows[q + _FROM_I_TO_J + spin] = -e[c], turn_j[c]
+        q += _PADDED
+
+
+@jit(forceinline=True)
+def tangents(n):
+    """Two unit vectors that are normal to a third and to each other (Duff et al. 2017, J. Comput. Graph. Tech. 6, 1)."""
+    x, y, z = n
+    sign = math.copysign(1.0, z)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    return (1.0 + sign * x * x * a, sign * b, -sign * x), (b, sign + y * y * a, -y)
+
+
+@jit(forceinline=True)
+def _add_block(target, at, rows, left, right, k_n, k_s, k_r, k_t):
+    """Add J_left^T K J_right of one contact to a block that is kept column by column.
+
+    The rolling stiffness counts for all spins, that of twisting for what is left along n.
+    """
+    one, normal, twist = left, load8(rows, _NORMAL), load8(rows, _TWIST)
+    two = one + _PADDED
+    normal = multiply8(spread8(k_n), normal)
+    twist = multiply8(spread8(k_t - k_r), twist)
+    slide_1 = multiply8(spread8(k_s), load8(rows, one))
+    slide_2 = multiply8(spread8(k_s), load8(rows, two))
+    for column in range(3):
+        c = np.uint64(column)
+        t = at + _PADDED * c
+        s = add8(load8(target, t), multiply8(normal, spread8(rows[_NORMAL + c])))
+        s = add8(s, multiply8(slide_1, spread8(rows[right + c])))
+        store8(target, t, add8(s, multiply8(slide_2, spread8(rows[right + _PADDED + c]))))
+    for column in range(3, 6):
+        c = np.uint64(column)
+        t = at + _PADDED * c
+        s = add8(load8(target, t), multiply8(twist, spread8(rows[_TWIST + c])))
+        s = add8(s, multiply8(slide_1, spread8(rows[right + c])))
+        store8(target, t, add8(s, multiply8(slide_2, spread8(rows[right + _PADDED + c]))))
+        target[t + c] += k_r
 
 
 @jit(forceinline=True)
@@ -343,17 +415,6 @@ def _add_strain(target, at, recede, n, k_n, k_s, sign, arm):
 @jit(forceinline=True)
 def _cross(a, b):
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@jit(forceinline=True)
-def _add_block(target, at, block, transposed):
-    """Add a block to one that is kept column by column."""
-    for r in range(6):
-        for c in range(6):
-            if transposed:
-                target[at + PADDED * r + c] += block[r, c]
-            else:
-                target[at + PADDED * c + r] += block[r, c]
 
 
 @jit
@@ -408,20 +469,26 @@ def weigh(state, rate, kick, work):
 
 
 @jit
-def contact_speeds(state, law):
-    """Greatest speed at which two monomers in contact move or roll against each other, and at which a contact turns.
+def contact_speeds(state, law, turning):
+    """Greatest speed at which two monomers in contact move or roll against each other, and at which contacts turn.
+
+    Parameters
+    ----------
+    state : State
+    law : part
+    turning : (n,) float64
+        Filled: for each fragment the greatest angular velocity of a line between two centres [rad/s], an upper limit.
 
     Returns
     -------
     greatest : float
         Of the contact points, or of the spins times the reduced radius [m/s].
-    turning : float
-        Of the line between the centres [rad/s], an upper limit.
     stretching : float
-        Of the contact points along that line [m/s].
+        Of the contact points along the line between the centres [m/s].
     """
     monomer, contact = state.monomer, state.contact
-    greatest, turning, stretching = 0.0, 0.0, 0.0
+    turning[:] = 0.0
+    greatest, stretching = 0.0, 0.0
     for k in range(state.counter[CONTACTS]):
         at = contact_start(law, k)
         i = state.pair_i[k] * _ROW
@@ -436,7 +503,8 @@ def contact_speeds(state, law):
         vx = monomer[i + VX] - monomer[j + VX]
         vy = monomer[i + VX + one] - monomer[j + VX + one]
         vz = monomer[i + VX + two] - monomer[j + VX + two]
-        turning = max(turning, (vx * vx + vy * vy + vz * vz) / (a_i + a_j) ** 2)
+        fragment = state.fragment[state.pair_i[k]]
+        turning[fragment] = max(turning[fragment], (vx * vx + vy * vy + vz * vz) / (a_i + a_j) ** 2)
         stretching = max(stretching, abs(vx * nx + vy * ny + vz * nz))
         gx = vx + ny * wz - nz * wy
         gy = vy + nz * wx - nx * wz
@@ -446,7 +514,19 @@ def contact_speeds(state, law):
         ty = monomer[i + WX + one] - monomer[j + WX + one]
         tz = monomer[i + WX + two] - monomer[j + WX + two]
         greatest = max(greatest, gx * gx + gy * gy + gz * gz, r * r * (tx * tx + ty * ty + tz * tz))
-    return math.sqrt(greatest), math.sqrt(turning), stretching
+    for fragment in range(turning.shape[0]):
+        turning[fragment] = math.sqrt(turning[fragment])
+    return math.sqrt(greatest), stretching
+
+
+@jit
+def add_turns(work, duration):
+    """Count by how much the contacts of each fragment may have turned in so many seconds; the greatest sum [rad]."""
+    greatest = 0.0
+    for fragment in range(work.turned.shape[0]):
+        work.turned[fragment] += work.turn_rate[fragment] * duration
+        greatest = max(greatest, work.turned[fragment])
+    return greatest
 
 
 def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calming=0.0, first=0.125):
