@@ -8,9 +8,8 @@ from ratd.base.materials import MATERIALS
 from ratd.drives.free import free, rest
 from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
-from ratd.engine.semi_implicit import (
-    RUNG, TURNED, _work, add_turns, contact_speeds, make_matrix, rung_below, semi_implicit, weigh,
-)  # fmt: skip
+from ratd.engine.mass_matrix import TURNED, make_matrix, weigh
+from ratd.engine.semi_implicit import RUNG, _work, add_turns, contact_speeds, rung_below, semi_implicit
 from ratd.engine.state import contact_field, copied, monomer_rows, new_state
 from ratd.engine.step import run, until
 from ratd.geometry.box import open_space, periodic, touching_pairs
@@ -278,8 +277,8 @@ def test_a_monomer_that_touches_its_own_copy_is_weighed_too():
     radius = 30e-9
     box = periodic((1.99 * radius, 1e-6, 1e-6))
     state = new_state(
-        np.zeros((1, 3)), np.array([radius]), MATERIALS["q-S"], touching_pairs(np.zeros((1, 3)), np.array([radius]), box),
-        LAW, box, leapfrog(),
+        np.zeros((1, 3)), np.array([radius]), MATERIALS["q-S"],
+        touching_pairs(np.zeros((1, 3)), np.array([radius]), box), LAW, box, leapfrog(),
     )  # fmt: skip
     assert state.counter[CONTACTS] == 1
     work = _work(state)

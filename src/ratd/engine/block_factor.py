@@ -225,8 +225,8 @@ def factorise(factor, chosen):
     ----------
     factor : BlockFactor
     chosen : (n,) bool
-        Places of the rows to treat, the others being factorised already: all, or those of parts that share no block with
-        the others that is not 0.
+        Places of the rows to treat, the others being factorised already: all, or those of parts that share no block
+        with the others that is not 0.
 
     Returns
     -------

@@ -130,12 +130,14 @@ def advance(state, law, drive, box, integrator, until):
             _take_note(state, law, drive, integrator)
             work = integrator.renew(state, law, work)
 
-        travel += scalar[FASTEST] * dt
+        # The list has to hold for the next step as well, before which nobody looks.
+        ahead = scalar[FASTEST] * dt
+        travel += ahead
         scale = growth(box, scalar, near_edges)
         left = reach_left(near_reach, scale, greatest)
-        if 2.0 * travel > left:
+        if 2.0 * (travel + ahead) > left:
             travel = farthest_move(state, near_reference, scale, turning)
-            if 4.0 * travel > left:
+            if 4.0 * travel > left or 2.0 * (travel + ahead) > left:
                 gone = drive.leave(state, law)
                 scale = growth(box, scalar, far_edges)
                 near_reference, radius = positions(state)
