@@ -14,6 +14,7 @@ from ratd.laws.derjaguin_muller_toporov import (
     vibration_period,
 )
 from reference.contact import SILICA, Pair
+from systems import lattice
 
 MATERIAL = MATERIALS["silica"]
 TABLE = {  # radius [um]: delta_eq [nm], E_break [J], period [ns]
@@ -64,3 +65,17 @@ def test_speed_of_sticking(radius, wanted):
 def test_the_smallest_never_part():
     """Overdamped: damping ratio 2.3 at 50 nm."""
     assert stick(0.05e-6, 30.0)
+
+
+def test_friction_that_follows_the_rate_is_stable_at_the_step_that_is_chosen():
+    """A cubic lattice, whose inner spheres have six contacts, with random spins: they only lose."""
+    radius = 0.3e-6
+    hertz = hertz_stiffness(radius / 2, MATERIAL.reduced_modulus)
+    overlap = equilibrium_overlap(hertz, adhesion_force(radius / 2, MATERIAL.surface_energy))
+    position = lattice(4, 2 * radius - overlap)
+    spin = np.random.default_rng(2).normal(size=position.shape)
+    run = evolve(
+        position, [radius] * len(position), spin=spin, material="silica", law=dmt(), duration=1e-7, balance=None
+    )
+    energy = run.kinetic_spin.values + run.kinetic_translation.values
+    assert energy[-1] < 0.9 * energy[0] and energy.max() < 1.01 * energy[0]

@@ -29,6 +29,9 @@ TURN = 0.04
 """Angle [rad] by which the frame turns in a step at most: the Coriolis force is explicit, and grows what moves by
 2 TURN^2 a step, where the drag takes c TURN."""
 
+LEAST_DRAG = 2.0 * TURN
+"""c up to which motion would grow in steps of the greatest turn."""
+
 DRIVES = ("prescribed", "torque")
 
 _ROW = np.uint64(ROW)
@@ -151,6 +154,10 @@ def quasi_static(name, *, omega_1, stretch=2e-14, pace=0.02, unrest=0.02, drag=1
     for word, value in (("pace", pace), ("unrest", unrest), ("stretch", stretch), ("drag", drag), ("omega_1", omega_1)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
+    if drag <= LEAST_DRAG:
+        raise InputError(
+            f"drag is {drag!r}; it must be above {LEAST_DRAG}, by which the Coriolis force makes motion grow."
+        )
     return QuasiStatic(float(omega_1), float(pace), float(unrest), float(stretch), float(drag), name == "torque")
 
 

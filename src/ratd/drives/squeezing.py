@@ -11,15 +11,14 @@ from ratd.base.vectors import add4, load4, multiply4, next4, numbers4, scale4, s
 from ratd.engine.layout import (
     FASTEST, FORCE_ROW, FORCE_X, INV_INERTIA, INV_MASS, MASS, MONOMERS, ROW, TORQUE_X, VIRIAL, VX, WX, X, Y, Z,
 )  # fmt: skip
-from ratd.observables.pressure import volume
 
 WORK = 1
 """Of `state.drive`: work of the box on what is in it so far, -int P_ab dV_ab [J]; where it is `as_printed` also that of
 the force -m H^2 x."""
-SUM_STEPS = 2
-"""... steps since the means were last taken."""
+SUM_TIME = 2
+"""... time [s] since the means were last taken."""
 SUM_TENSOR = 3
-"""... six numbers: sum over these steps of V P_ab (xx, yy, zz, xy, xz, yz) [J]."""
+"""... six numbers: integral of P_ab over it (xx, yy, zz, xy, xz, yz) [Pa s]."""
 
 _ROW = np.uint64(ROW)
 _FORCE_ROW = np.uint64(FORCE_ROW)
@@ -125,14 +124,13 @@ def _move(state, box, kick, dt):
         work += 0.5 * (before[axis] * (factor[axis] - 1.0) + after[axis] * (1.0 - 1.0 / factor[axis]))
         work -= rate[axis] * kick * scalar[VIRIAL + axis]
     drive[WORK] += work
-    for axis in range(3):
-        drive[SUM_TENSOR + axis] += 0.5 * (before[axis] * factor[axis] + after[axis] / factor[axis])
+    weight = kick / (lx * ly * lz)
     shear = (xy, xz, yz)
     for axis in range(3):
-        drive[SUM_TENSOR + 3 + axis] += shear[axis]
-    for component in range(6):
-        drive[SUM_TENSOR + component] += scalar[VIRIAL + component]
-    drive[SUM_STEPS] += 1.0
+        moving = 0.5 * (before[axis] * factor[axis] + after[axis] / factor[axis])
+        drive[SUM_TENSOR + axis] += weight * (moving + scalar[VIRIAL + axis])
+        drive[SUM_TENSOR + 3 + axis] += weight * (shear[axis] + scalar[VIRIAL + 3 + axis])
+    drive[SUM_TIME] += kick
     scalar[FASTEST] = math.sqrt(fastest) if xx + yy + zz < np.inf else math.nan
 
 
@@ -141,12 +139,9 @@ def squeezing():
     return Squeezing(True)
 
 
-def mean_pressure_tensor(state, box):
-    """Mean of V P_ab (`ratd.observables.pressure`) since the last call, over the volume now [Pa], (6,).
-
-    Starts a new mean.
-    """
-    steps = state.drive[SUM_STEPS]
-    mean = state.drive[SUM_TENSOR : SUM_TENSOR + 6] / max(steps, 1.0) / volume(state, box)
-    state.drive[SUM_STEPS : SUM_TENSOR + 6] = 0.0
+def mean_pressure_tensor(state):
+    """Mean of P_ab (`ratd.observables.pressure`) over the time since the last call [Pa], (6,); starts a new mean."""
+    time = state.drive[SUM_TIME]
+    mean = state.drive[SUM_TENSOR : SUM_TENSOR + 6] / (time if time > 0.0 else 1.0)
+    state.drive[SUM_TIME : SUM_TENSOR + 6] = 0.0
     return mean

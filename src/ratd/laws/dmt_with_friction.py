@@ -374,6 +374,9 @@ class DMT(NamedTuple):
         elastic = math.sqrt(light / (1.5 * hertz * math.sqrt(overlap)))
         viscous = light / max(hertz * self.viscous_time * math.sqrt(overlap), 1e-300)
         contact[at + STEP] = min(elastic, viscous)
+        if self.friction == VELOCITY:
+            # explicit, and stable up to 2 tau over the number of contacts of a sphere
+            contact[at + STEP] = min(contact[at + STEP], 2.0 * tau)
         delta = max(a_i + a_j - distance, 0.0)
         contact[at + OVERLAP] = delta
         contact[at + NORMAL] = hertz * delta**1.5 - adhesion

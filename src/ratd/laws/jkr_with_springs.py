@@ -355,7 +355,7 @@ class JKR(NamedTuple):
             s = dmt_state(max(compression, 0.0))
         elif at_rest:
             for _ in range(40):
-                s = contact_state(compression, s)
+                s = contact_state(max(compression, COMPRESSION_END), s)
         else:
             radiated = -normal_potential(S_TOUCH, f_c, delta0)
         contact[at + S] = s

@@ -43,10 +43,13 @@ def contact_state(compression, s):
 
     Notes
     -----
-    docs/model/laws.md; Eqs. 9, 12 and 23 of the paper.
+    docs/model/laws.md; Eqs. 9, 12 and 23 of the paper. A stretched contact that springs back in one long step begins
+    where the slope is small, and the first step of Newton would end far beyond the root. The root is a concave function
+    of the compression, so it lies below its tangent at equilibrium, 0.9 + 0.1 delta/delta_0.
     """
     s2 = s * s
     s = s - (3.0 * s2 * s2 - 2.0 * s - compression) * rough_reciprocal(max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR))
+    s = min(s, 0.9 + 0.1 * compression)
     s2 = s * s
     return s - (3.0 * s2 * s2 - 2.0 * s - compression) * rough_reciprocal(max(12.0 * s2 * s - 2.0, _SLOPE_FLOOR))
 

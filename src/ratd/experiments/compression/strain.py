@@ -13,12 +13,14 @@ from ratd.engine.hand_over import hand_over
 from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
 from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import State, monomer_rows
-from ratd.engine.step import run, until
+from ratd.engine.step import STEPS_DONE, run, until
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
 
 __all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
 
+CALL = 100_000
+"""Steps of a call of the time loop at most."""
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
 """Wall time [s] between two checkpoints, and two calls of `progress`."""
@@ -119,7 +121,10 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
             break
         parts = parts._replace(integrator=integrator if number <= change else explicit)
         long = isinstance(parts.integrator, SemiImplicit)
-        state, _ = run(state, law, drive, box, parts.integrator, until(time=marks[number - 1]))
+        code = STEPS_DONE
+        while code == STEPS_DONE:  # so that Ctrl-C need not wait for a record
+            goal = until(time=marks[number - 1], steps=state.counter[STEPS] + CALL)
+            state, code = run(state, law, drive, box, parts.integrator, goal)
         if number == change:
             state = hand_over(state, law, drive, box, integrator, explicit)
             parts = parts._replace(integrator=explicit)
@@ -159,12 +164,9 @@ def _row(state, parts, rows):
     size = volume(state, box)
     monomers = monomer_rows(state)
     phi = 4.0 / 3.0 * math.pi * float(np.sum(monomers[:, RADIUS] ** 3)) / size
-    tensor = mean_pressure_tensor(state, box)
-    middle = phi
-    if rows is not None:
-        # The mean is that of P V; the volume in the middle of the time makes it a pressure.
-        middle = math.sqrt(phi * rows[-1][COLUMNS["phi"][0]])
-        tensor = tensor * middle / phi
+    tensor = mean_pressure_tensor(state)
+    # of the time since the last record
+    middle = phi if rows is None else math.sqrt(phi * rows[-1][COLUMNS["phi"][0]])
     total = moving + spinning + held.sum() + gone.sum() - state.drive[WORK]
     row = [state.scalar[TIME], phi, middle, *box.edges(state.scalar), tensor[:3].mean(), *tensor]
     row += [state.counter[CONTACTS], moving, spinning, *held, *gone, state.drive[WORK]]

@@ -109,8 +109,8 @@ def in_bins(run, first, last):
     Returns
     -------
     dict of str to (bins,) array
-        Pressures are means over the records in a bin, other quantities are those of the record nearest to its end below
-        it; NaN where the run does not fill the bin.
+        Pressures are means over the records in a bin, other quantities are those of the first record at or
+        above its middle; NaN where the run does not fill the bin.
     """
     number = last - first + 1
     middle = bins(run["phi_mean"].values) - first
