@@ -74,10 +74,19 @@ def test_files_as_others_write_them(tmp_path, name, text):
     [
         ("a.txt", "0 0 20\n", "is no .txt file of spheres .there is no column radius; the columns are x, y, z"),
         ("a.txt", "", "is no .txt file of spheres"),
-        ("a.txt", "0 0 0 -20\n", "holds 1 spheres; allowed: finite numbers x, y, z and radii above 0"),
+        (
+            "a.txt",
+            "0 0 0 -20\n",
+            "holds 1 spheres; allowed: finite numbers x, y, z and radii above 0; sphere 1 has",
+        ),
+        ("a.xyz", "", "it has 0 frames, and frame -1 was asked for"),
         ("a.csv", "x,y,z,r\n0,0,zero,20\n", "is no .csv file of spheres .could not convert string to float: 'zero'"),
         ("a.xyz", "3\nProperties=pos:R:3:radius:R:1\n0 0 0 20\n", "the last frame has 3 lines instead of 5"),
-        ("a.xyz", "1\nno properties\n0 0 0 20\n", "is no .xyz file of spheres .'Properties'"),
+        (
+            "a.xyz",
+            "1\nno properties\n0 0 0 20\n",
+            ".it has no radii; its second line must be",
+        ),
         ("a.xyz", '1\nProperties=pos:R:3:r:R:1 Lattice="9 1 0 0 9 0 0 0 9"\n0 0 0 2\n', "the box is not rectangular"),
         ("a.dump", "ITEM: TIMESTEP\n", "is no .dump file of spheres"),
     ],
@@ -113,7 +122,7 @@ def test_frames_of_a_run_come_back_one_by_one(tmp_path, suffix):
         x = run["snapshot_x"].values[k, :n]
         np.testing.assert_allclose(read_particles(tmp_path / f"run.{suffix}", frame=k).position[:, 0], x, rtol=1e-10)
     assert len(read_particles(tmp_path / f"run.{suffix}").radius) == 3
-    with pytest.raises(FileError, match="is no"):
+    with pytest.raises(FileError, match="has 3 frames, and frame 3 was asked for"):
         read_particles(tmp_path / f"run.{suffix}", frame=3)
 
 
@@ -159,3 +168,21 @@ def test_ase_reads_radius_fragment_force_and_box(tmp_path):
     frames[0].set_array("radius", frames[0].arrays["radius"])
     ase.write(tmp_path / "theirs.xyz", frames[0], format="extxyz")
     np.testing.assert_allclose(read_particles(tmp_path / "theirs.xyz").radius, run["monomer_radius"], rtol=1e-6)
+
+
+def test_snapshots_of_an_evolution_and_a_compression_are_frames(tmp_path, grain):
+    run = ratd.evolve(
+        grain.position, grain.radius, box=ratd.periodic(1e-6), duration=1e-12, records=4, snapshot_every=2
+    )
+    write_particles(run, tmp_path / "film.xyz")
+    for k in range(run.sizes["snapshot"]):
+        back = read_particles(tmp_path / "film.xyz", frame=k)
+        np.testing.assert_allclose(back.position, run["snapshot_position"][k], rtol=1e-10, atol=1e-20)
+        np.testing.assert_allclose(back.box, 1e-6)
+    cluster = ratd.grow_bcca(16, "ice", seed=3)
+    run = ratd.compress(cluster, 1e-3, 0.2, snapshots=(0.16, 0.2), balance=False)
+    write_particles(run, tmp_path / "film.dump")
+    for k in range(2):
+        back = read_particles(tmp_path / "film.dump", frame=k)
+        np.testing.assert_allclose(back.position, run["snapshot_position"][k], rtol=1e-10, atol=1e-20)
+        np.testing.assert_allclose(back.box, run["snapshot_box_length"].values[k], rtol=1e-10)

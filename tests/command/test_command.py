@@ -88,6 +88,8 @@ def test_two_clusters_collide_from_their_files(tmp_path):
     assert one.with_name("one_collided.html").read_text().startswith("<!doctype html>")
     # the same rotations of one with itself are other collisions
     done = run("collide", one, *how, "--law", "jkr")
+    assert done.exit_code == 1 and "give another --out" in done.stderr
+    done = run("collide", one, *how, "--law", "jkr", "--out", tmp_path / "alone")
     assert done.exit_code == 0 and "24 spheres at 20 m/s" in done.stdout
 
 
@@ -109,6 +111,33 @@ def test_a_stopped_command_goes_on_with_the_same_answer(chain, monkeypatch):
     assert run("spin-up", chain, *FAST).exit_code == 0
     assert begun == [0, 1, 2, 2]
     assert chain.with_name("chain_spin_up.nc").read_bytes() == chain.with_name("whole.nc").read_bytes()
+
+
+def test_what_is_there_is_taken_and_other_runs_are_not_overwritten(chain, monkeypatch):
+    first = run("spin-up", chain, *FAST)
+    target = chain.with_name("chain_spin_up.nc")
+    made = target.read_bytes()
+
+    def never(grain, **how):
+        raise AssertionError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(command, "spin_up", never)
+        again = run("spin-up", chain, *FAST)
+        other = run("spin-up", chain, "--material", "a-C", *FAST[2:])
+    assert again.exit_code == 0 and again.stdout.splitlines()[-5:] == first.stdout.splitlines()[-5:]
+    assert other.exit_code == 1 and other.stderr.count("\n") == 1 and "remove it, or give another --out" in other.stderr
+    assert target.read_bytes() == made
+
+
+def test_a_run_that_fails_ends_with_a_sentence_and_leaves_nothing(chain, monkeypatch):
+    def fail(grain, **how):
+        raise RuntimeError("the balance of energy is off")
+
+    monkeypatch.setattr(command, "spin_up", fail)
+    done = run("spin-up", chain, *FAST)
+    assert done.exit_code == 1 and "error: the balance of energy is off" in done.stderr
+    assert [path.name for path in chain.parent.iterdir()] == [chain.name]
 
 
 def test_starts_are_moved_by_less_than_an_atom(chain):

@@ -197,3 +197,31 @@ def test_spheres_that_do_not_touch_have_a_time_step():
     held = evolve(PAIR, [A, A], material="q-S", duration=1e-10, records=1, timestep_factor=0.1)
     assert free.attrs["timestep"] == pytest.approx(held.attrs["timestep"], rel=1e-12)
     assert free.n_contacts[-1] == 0
+
+
+@pytest.mark.parametrize("duration", [1e-10, 1e-9, 1e-8])
+def test_a_pair_near_rest_keeps_its_balance_whatever_the_records(duration):
+    run = evolve([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9] * 2, material="q-S", duration=duration)
+    stored = np.abs(run["stored"].values[-1]).sum()
+    assert np.abs(run["residual"].values).max() < 1e-4 * stored
+
+
+def test_a_long_record_is_made_in_calls(tmp_path, monkeypatch):
+    """So that it can be stopped, and goes on, in its middle."""
+    how = {"material": "q-S", "duration": 2e-9, "records": 1}
+    pair = [[0, 0, 0], [0, 0, 39.9e-9]], [20e-9] * 2
+    monkeypatch.setattr(module, "CALL", 100)
+    whole = evolve(*pair, **how)
+    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(module, "PROGRESS_INTERVAL", 0.0)
+    parts = []
+
+    def stop(part, to_go, row):
+        parts.append(part)
+        if len(parts) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        evolve(*pair, **how, checkpoint=tmp_path / "evolve", progress=stop)
+    assert 0.0 < parts[0] < parts[-1] < 1.0
+    xr.testing.assert_identical(evolve(*pair, **how, checkpoint=tmp_path / "evolve"), whole)

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ratd.base.checks import check_radii, far_apart, number_array
+from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.materials import get_material
@@ -105,6 +105,8 @@ class Grain:
         self.radius = number_array(radius, "radius")
         self.material = get_material(material)
         self.type = type
+        if seed is not None and not (is_number(seed) and seed == int(seed)):
+            raise InputError(f"seed is {seed!r}; it must be a whole number, or None.")
         self.seed = seed
         _check_arrays(self.position, self.radius)
         self.contacts, gap = _contacts(self.position, self.radius, self.material)

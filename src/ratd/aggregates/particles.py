@@ -85,8 +85,12 @@ def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Parti
         raise FileError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, IndexError, KeyError, TypeError, UnicodeDecodeError) as error:
         raise FileError(f"{path}: is no {path.suffix} file of spheres ({error})") from error
-    if not len(values) or not np.isfinite(values).all() or not (values[:, 3] > 0).all():
-        raise FileError(f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0")
+    wrong = np.flatnonzero(~(np.isfinite(values).all(axis=1) & (values[:, 3] > 0)))
+    if not len(values) or len(wrong):
+        which = f"; sphere {wrong[0] + 1} has {', '.join(map(str, values[wrong[0]]))}" if len(wrong) else ""
+        raise FileError(
+            f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0{which}"
+        )
     values = values * factor
     try:
         check_radii(values[:, 3])
@@ -139,10 +143,21 @@ def _frames(lines, length):
     return frames
 
 
+def _chosen(frames, frame):
+    if not -len(frames) <= frame < len(frames):
+        raise ValueError(f"it has {len(frames)} frames, and frame {frame} was asked for")
+    return frames[frame]
+
+
 def _read_xyz(path, frame):
     lines = path.read_text(encoding="utf-8").splitlines()
-    lines = _frames(lines, lambda lines: int(lines[0]) + 2)[frame]
+    frames = _frames(lines, lambda lines: int(lines[0]) + 2)
+    lines = _chosen(frames, frame)
     about = dict(word.partition("=")[::2] for word in shlex.split(lines[1]))
+    if "Properties" not in about:
+        raise ValueError(
+            "it has no radii; its second line must be that of extended XYZ: Properties=species:S:1:pos:R:3:radius:R:1"
+        )
     fields = about["Properties"].split(":")
     names = []
     for name, _, width in zip(fields[::3], fields[1::3], fields[2::3], strict=True):
@@ -174,7 +189,7 @@ def _read_dump(path, frame):
         at = lines.index("ITEM: NUMBER OF ATOMS")
         return next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")) + 1 + int(lines[at + 1])
 
-    lines = _frames(lines, length)[frame]
+    lines = _chosen(_frames(lines, length), frame)
     at = next(k for k, line in enumerate(lines) if line.startswith("ITEM: BOX BOUNDS"))
     begin = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     bounds = np.array([line.split() for line in lines[at + 1 : at + 4]], dtype=float)
@@ -194,8 +209,7 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
     Parameters
     ----------
     content : ratd.Grain, Particles, or xarray.Dataset
-        A grain; what `read_particles` gives; the snapshots of a run of `ratd.spin_up`, a frame each; or the last state
-        of one of `ratd.evolve`.
+        A grain; what `read_particles` gives; or a run: its snapshots, a frame each, or its last state without any.
     path : path-like
         By its suffix one of the formats of `read_particles`. Text and CSV hold one frame.
     unit : str, optional
@@ -247,10 +261,31 @@ def _contents(content):
             force = snapshot["snapshot_normal_force"].values * 1e9
             table = _table(position, content["monomer_radius"].values, fragment=fragment, normal_force=force)
             yield table[fragment >= 0], None, {"omega": float(snapshot["snapshot_omega"])}
+    elif content.sizes.get("snapshot", 0):
+        for k in range(content.sizes["snapshot"]):
+            if "snapshot_time" in content:
+                time = float(content["snapshot_time"].values[k])
+                record = int(np.abs(content["time"].values - time).argmin())
+                more, about = {"fragment": content["snapshot_piece"].values[k]}, {"time": time}
+            else:
+                phi = float(content["snapshot_phi"].values[k])
+                record = int(np.abs(content["phi"].values - phi).argmin())
+                more, about = {}, {"phi": phi}
+            yield _table(content["snapshot_position"].values[k], _radii(content), **more), _box(content, record), about
     elif "position" in content:
-        box = content["box_length"].values[-1] if "box_length" in content else np.zeros(3)
-        table = _table(content["position"].values, content["radius"].values, fragment=content["piece"].values)
-        yield table, box if np.all(box > 0) else None, {"time": float(content["time"].values[-1])}
+        more = {"fragment": content["piece"].values} if "piece" in content else {}
+        about = {"time": float(content["time"].values[-1])}
+        yield _table(content["position"].values, _radii(content), **more), _box(content, -1), about
+
+
+def _radii(run):
+    return run["radius" if "radius" in run else "monomer_radius"].values
+
+
+def _box(run, record):
+    """Edges of the box at a record, None in open space."""
+    box = run["box_length"].values[record] if "box_length" in run else np.zeros(3)
+    return box if np.all(box > 0) else None
 
 
 def _table(position, radius, **more):

@@ -48,7 +48,7 @@ class _Commands(click.Group):
     def invoke(self, context):
         try:
             return super().invoke(context)
-        except (InputError, FileError) as error:
+        except (InputError, FileError, RuntimeError) as error:
             click.echo(f"error: {error}", err=True)
             sys.exit(1)
 

@@ -14,8 +14,11 @@ import numpy as np
 
 from ratd.aggregates.particles import UNITS
 from ratd.base.checks import is_number
+from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
+from ratd.pipeline import io
+from ratd.pipeline.blocks import rows
 from ratd.pipeline.partial import Block, Pieces, locked
 
 __all__ = ["aggregate_options", "answer", "moved", "progress_bar", "several"]
@@ -28,7 +31,9 @@ def aggregate_options(function):
     """Arguments and options that say which aggregate is meant, of what, and how often; a decorator."""
     for decorate in (
         click.option(
-            "--out", type=click.Path(path_type=Path), help="Stem of the files written.  [default: that of FILE]"
+            "--out",
+            type=click.Path(path_type=Path),
+            help="Stem of the files written.  [default: that of FILE and what is done]",
         ),
         click.option("--starts", default=5, show_default=True, type=click.IntRange(1, 1000), help="Number of starts."),
         click.option("--unit", default="nm", show_default=True, type=click.Choice(list(UNITS)), help="Of FILE."),
@@ -61,7 +66,7 @@ def moved(position, start):
 
 
 def several(target, kind, material, provenance, starts, make):
-    """Write a file with the runs of several starts; a killed command goes on where it was.
+    """Write a file with the runs of several starts, unless it is there; a killed command goes on where it was.
 
     Parameters
     ----------
@@ -78,18 +83,43 @@ def several(target, kind, material, provenance, starts, make):
         ``make(start, checkpoint, progress)`` returns the row of a start (see `ratd.pipeline.blocks`). It calls
         ``progress(part)`` with the part of the work that is done, and may keep what it needs to go on below the path
         `checkpoint`.
+
+    Raises
+    ------
+    InputError
+        If the file holds other runs.
     """
     block = Block(Path(target), material, list(range(starts)), provenance)
-    with locked(block.folder / "lock", logging.getLogger(__name__)):
-        pieces = Pieces(block, kind)
-        with progress_bar(starts) as tell:
-            for start in block.seeds:
-                tell(start, 0.0)
-                if start not in pieces:
-                    pieces.add(start, make(start, block.checkpoint(start), lambda part, start=start: tell(start, part)))
-                tell(start, 1.0)
-        pieces.join()
+    if block.target.exists() and _is_there(block, kind):
+        return
+    try:
+        with locked(block.folder / "lock", logging.getLogger(__name__)):
+            pieces = Pieces(block, kind)
+            with progress_bar(starts) as tell:
+                for start in block.seeds:
+                    tell(start, 0.0)
+                    if start not in pieces:
+                        row = make(start, block.checkpoint(start), lambda part, start=start: tell(start, part))
+                        pieces.add(start, row)
+                    tell(start, 1.0)
+            pieces.join()
+    except (InputError, RuntimeError):
+        # what failed will do so again: only finished starts are worth keeping
+        if not any(block.folder.glob("seed_*.nc")):
+            shutil.rmtree(block.folder, ignore_errors=True)
+        raise
     shutil.rmtree(block.folder, ignore_errors=True)
+
+
+def _is_there(block, kind):
+    """Whether a file holds these very runs; InputError where it holds those of other settings."""
+    found = io.read(block.target, kind)
+    if any(found.attrs.get(name) != block.provenance[name] for name in ("code_hash", "settings_hash", "input_hash")):
+        raise InputError(
+            f"{block.target} holds runs of another aggregate, other settings or another version of ratd; remove it, or "
+            "give another --out."
+        )
+    return len(rows(found, kind)) == len(block.seeds)
 
 
 class progress_bar:

@@ -147,8 +147,10 @@ def locked(path, log):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle = open(path, "a")
-        except FileNotFoundError:  # `tidy` removed the folder at this moment
-            continue
+        except FileNotFoundError as error:
+            if path.parent.parent.is_dir():  # `tidy` removed the folder at this moment
+                continue
+            raise FileError(f"{path}: cannot be written ({error.strerror})") from error
         except OSError as error:
             raise FileError(f"{path}: cannot be written ({error.strerror})") from error
         try:

@@ -99,6 +99,7 @@ def test_built_clusters_are_at_rest_and_others_come_to_rest():
         ({"records": 0}, "records is 0"),
         ({"snapshot_every": -1}, "snapshot_every is -1"),
         ({"duration": 0.0}, "duration is 0.0"),
+        ({"velocity": 1e-3}, r"in which the two do not meet: they begin 2e-08 m apart .* take at least 4e-05 s"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(arguments, words):

@@ -31,7 +31,7 @@ SNAPSHOTS = 5
 @click.option("--velocity", required=True, type=click.FloatRange(0, 1e4, min_open=True), help="Of the collision [m/s].")
 @click.option("--other", type=click.Path(path_type=Path), help="File with the other aggregate.  [default: the same]")
 @click.option(
-    "--impact-parameter", default=0.0, show_default=True, type=click.FloatRange(0, 1),
+    "--impact-parameter", default=0.0, show_default=True, type=click.FloatRange(0, 1, max_open=True),
     help="In the sum of the radii of both.",
 )  # fmt: skip
 @click.option("--law", default="dmt", show_default=True, type=click.Choice(["dmt", "jkr"]), help="Of the contacts.")

@@ -2,17 +2,16 @@
 
 import numpy as np
 
-from ratd.base.errors import InputError
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import reduced_radius, touching_distance
 from ratd.laws.contact_fields import STEP
 from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overlap, hertz_stiffness, vibration_period
-from ratd.laws.dmt_with_friction import DMT, SPRING, VELOCITY, dmt
-from ratd.laws.jkr_with_springs import JKR, jkr
+from ratd.laws.dmt_with_friction import DMT, SPRING, VELOCITY
+from ratd.laws.jkr_with_springs import JKR
 
-__all__ = ["BALANCE", "SPRING_BALANCE", "balance_of", "contacts_of", "law_of", "longest_step", "step_of"]
+__all__ = ["BALANCE", "SPRING_BALANCE", "balance_of", "contacts_of", "longest_step", "step_of"]
 
 BALANCE, SPRING_BALANCE = 0.01, 0.03
 """Part of the kinetic energy at the start by which the balance of energy may be off. The springs of DMT follow the
@@ -22,23 +21,6 @@ PARTS = {"contact": 1 / 16, "period": 1 / 300, "friction": 1 / 15}
 and over the time in which friction follows the rate."""
 LONGEST_PARTS = {"contact": 1 / 4, "period": 1 / 40, "friction": 1 / 2}
 """Steps beyond are refused: hard impacts and spheres of several contacts shorten the times of a contact at rest."""
-
-
-def law_of(law):
-    """A law by its name, "dmt" or "jkr", or as it is.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
-    if isinstance(law, str) or law is None:
-        if law not in ("dmt", "jkr"):
-            raise InputError(f"law is {law!r}; allowed are 'dmt', 'jkr', or a law of `ratd.laws` with its options.")
-        return dmt() if law == "dmt" else jkr()
-    if not (isinstance(law, tuple) and hasattr(law, "forces")):
-        raise InputError(f"law is {law!r}; allowed are 'dmt', 'jkr', or a law of `ratd.laws` with its options.")
-    return law
 
 
 def balance_of(law):

@@ -3,13 +3,16 @@
 import numpy as np
 
 from ratd.aggregates.grain import Grain
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
-from ratd.experiments.collision.laws import balance_of, contacts_of, law_of, longest_step, step_of
+from ratd.experiments.collision.laws import balance_of, contacts_of, longest_step, step_of
 from ratd.experiments.evolve import columns, evolve
 from ratd.experiments.relax import relax
 from ratd.engine.layout import X
 from ratd.engine.state import monomer_rows
+from ratd.laws.chosen import law_of
+from ratd.laws.dmt_with_friction import dmt
 
 __all__ = ["DURATION", "GAP", "at_rest", "collide", "impact_energy"]
 
@@ -41,7 +44,7 @@ def at_rest(grain, law="dmt"):
     ratd.Grain
         Spheres in the same order, see `ratd.experiments.relax.relax`.
     """
-    state = relax(grain, law=law_of(law), timestep_factor=RELAXATION_STEP)
+    state = relax(grain, law=law_of(law, dmt), timestep_factor=RELAXATION_STEP)
     position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
     return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
 
@@ -110,8 +113,13 @@ def collide(
     RuntimeError
         If the balance of energy is off by more than `ratd.experiments.collision.laws.balance_of`.
     """
-    law = law_of(law)
+    law = law_of(law, dmt)
     _check(a, b, velocity, impact_parameter, seed, gap)
+    if is_number(duration) and velocity * duration < 2.0 * gap:
+        raise InputError(
+            f"duration is {duration!r} s, in which the two do not meet: they begin {gap:g} m apart with "
+            f"{velocity:g} m/s; take at least {2.0 * gap / velocity:.2g} s."
+        )
     material = a.material
     radius = np.concatenate([a.radius, b.radius])
     if timestep is None:
@@ -161,17 +169,13 @@ def _check(a, b, velocity, impact_parameter, seed, gap):
         raise InputError(
             f"The clusters are of {a.material.name!r} and of {b.material.name!r}; they must be of one material."
         )
-    if not _is_number(velocity) or not velocity > 0.0:
+    if not is_number(velocity) or not velocity > 0.0:
         raise InputError(f"velocity is {velocity!r}; it must be a number above 0, in m/s.")
-    if not _is_number(impact_parameter) or not 0.0 <= impact_parameter < 1.0:
+    if not is_number(impact_parameter) or not 0.0 <= impact_parameter < 1.0:
         raise InputError(f"impact_parameter is {impact_parameter!r}; it must be a number from 0 to below 1.")
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
-    if not _is_number(gap) or not gap > 0.0:
+    if not is_number(gap) or not gap > 0.0:
         raise InputError(
             f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start."
         )
-
-
-def _is_number(value):
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and np.isfinite(value)

@@ -16,6 +16,7 @@ from ratd.experiments.compression.static import box_rate, static_from, time_unit
 from ratd.experiments.compression.steps import LongSteps, integrators
 from ratd.experiments.compression.strain import Parts, strain, strain_dataset
 from ratd.geometry.box import periodic, touching_pairs
+from ratd.laws.chosen import check_stiffness, law_of
 from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.structure import radius_of_gyration
 
@@ -36,6 +37,8 @@ BALANCE = {0.1: 0.005, 0.3: 0.002}
 """From this filling factor on, the balance of energy is to hold to this part of the work of the box with explicit
 steps; where long ones were taken, the part of these may be `LONG_BALANCE` of their work."""
 LONG_BALANCE = {0.1: 0.05}
+EVENTS = 100
+"""Contacts whose energy is taken in place of that work where it is less."""
 NOT_STATIC = 0.1
 """A run is warned of when it is static only from this filling factor on."""
 
@@ -102,8 +105,9 @@ def compress(
         Filling factor at which to end.
     material : str or Material, optional
         In place of that of the cluster.
-    law : part, optional
-        Contact law; by default `ratd.laws.jkr` with the constant damping k_n = 0.01.
+    law : str or part, optional
+        Contact law; by default `ratd.laws.jkr` with the constant damping k_n = 0.01. Long steps need one that tells its
+        stiffness, which "dmt" does not.
     timestep_factor : float
         f of the explicit step.
     long_steps : LongSteps or None
@@ -151,7 +155,9 @@ def compress(
     cluster = Cluster(cluster, material)
     strain_rate = _positive("strain_rate", strain_rate)
     box, first, until_phi = _box(cluster, strain_rate, until_phi, box_length, scheme)
-    law = jkr(damping="constant", constant_damping=K_N) if law is None else law
+    law = law_of(law, compression_law)
+    if long_steps is not None:
+        check_stiffness(law, "give long_steps=None")
     first_integrator, explicit = integrators(
         cluster.grain.material, cluster.radius, cluster.time_unit, timestep_factor, long_steps
     )
@@ -186,6 +192,11 @@ def compress(
             "radius_of_gyration": radius_of_gyration(cluster.grain.position, cluster.grain.mass),
         }
     )
+
+
+def compression_law():
+    """The law of the paper: JKR with a constant damping."""
+    return jkr(damping="constant", constant_damping=K_N)
 
 
 def prepared(cluster, parts, settings):
@@ -258,12 +269,21 @@ def _static_from(cluster, box):
 def _check_balance(row, before, long):
     shares = LONG_BALANCE if long else BALANCE
     allowed = [share for phi, share in shares.items() if row["phi"] >= phi]
-    work, off = (row[name] - (0.0 if before is None else before[name]) for name in ("work", "energy_residual"))
-    if allowed and not abs(off) <= allowed[-1] * abs(work):
+    if not allowed:
+        return
+    lost = [name for name in row if name.startswith("dissipated_")]
+    work, off, gone = (
+        sum(row[name] - (0.0 if before is None else before[name]) for name in names)
+        for names in (["work"], ["energy_residual"], lost)
+    )
+    # Few monomers attract each other as much as the box presses: its work is near 0, what they dissipate is not. At
+    # first nothing moves but single contacts, whose energy is that which the step can miss by a part.
+    held = sum(abs(row[name]) for name in row if name.startswith("stored_"))
+    moved = max(abs(work), gone, EVENTS * held / max(row["n_contacts"], 1.0))
+    if not abs(off) <= allowed[-1] * moved:
         raise RuntimeError(
-            f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J, "
-            f"{abs(off / work):.2%} of the work of the box; at most {allowed[-1]:.1%} is "
-            "allowed: take a smaller time step"
+            f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are {allowed[-1]:.1%} of "
+            f"the {moved:.3g} J that the box worked or friction took: take a smaller time step"
         )
 
 

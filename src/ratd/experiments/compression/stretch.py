@@ -12,13 +12,13 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
 from ratd.engine.state import come_to_rest
 from ratd.engine.step import run, until
-from ratd.experiments.compression.run import K_N, TIMESTEP_FACTOR
+from ratd.experiments.compression.run import TIMESTEP_FACTOR, compression_law
 from ratd.experiments.compression.static import box_rate
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.geometry.box import periodic
-from ratd.laws.jkr_with_springs import jkr
+from ratd.laws.chosen import check_stiffness, law_of
 
 __all__ = ["AXES", "stretch", "tension"]
 
@@ -86,8 +86,14 @@ def stretch(
         raise InputError("compressed must be what ratd.compress returned, with the state at its end.")
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
-    law = jkr(damping="constant", constant_damping=K_N) if law is None else law
+    law = law_of(law, compression_law)
     attrs = compressed.attrs
+    if repr(law) != attrs["law"]:
+        raise InputError(
+            f"law is {law!r}; it must be that of the compression, {attrs['law']}, whose contacts the aggregate has."
+        )
+    if long_steps is not None:
+        check_stiffness(law, "give long_steps=None")
     material = Material(attrs["material"], *(attrs[field.name] for field in fields(Material) if field.name != "name"))
     integrator, _ = integrators(material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps)
     edges = compressed["box_length"].values[-1]

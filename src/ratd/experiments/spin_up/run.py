@@ -1,6 +1,5 @@
 """Spin-up of one grain until it is disrupted: relaxation at rest, then records at fixed omega, with checkpoints."""
 
-import math
 import time
 
 import numpy as np
@@ -12,6 +11,7 @@ from ratd.drives.rotating import OMEGA_RAT
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, STEPS
+from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import copied
 from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
@@ -29,6 +29,7 @@ from ratd.experiments.spin_up.records import (
     sum_of_energies,
 )
 from ratd.geometry.box import open_space
+from ratd.laws.chosen import check_stiffness, law_of
 from ratd.laws.jkr_with_springs import jkr
 
 __all__ = ["spin_up"]
@@ -94,8 +95,9 @@ def spin_up(
         Treatment of the viscoelastic damping in these. Explicit is stable for small f only.
     integrator : part, optional
         `ratd.engine.semi_implicit.semi_implicit` with `STEP` for spin-ups that wait, leapfrog for the others.
-    law : part, optional
-        Contact law, `ratd.laws.jkr` with its defaults when not given.
+    law : str or part, optional
+        Contact law, `ratd.laws.jkr` with its defaults when not given. A spin-up that waits needs one that tells its
+        stiffness; "dmt" takes an epsilon.
     max_steps : int, optional
         End after so many steps.
     records : int
@@ -125,9 +127,10 @@ def spin_up(
     RuntimeError
         If the integration fails, or leaves the balance of energy.
     """
-    bound = cut_bound(grain) if isinstance(grain, Grain) else math.nan
+    _check(grain, max_steps, records, snapshot_every)
+    bound = cut_bound(grain)
     how = how_to_turn(
-        getattr(grain, "type", None), bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag,
+        grain.type, bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag,
         epsilon=epsilon, angular_acceleration=angular_acceleration, coriolis=coriolis,
         timestep_factor=timestep_factor, damping=damping, integrator=integrator,
     )  # fmt: skip
@@ -173,10 +176,11 @@ class Run:
     """
 
     def __init__(self, grain, how, bound, law=None, max_steps=None, records=300, snapshot_every=0):
-        _check(grain, max_steps, records, snapshot_every)
         self.grain, self.how, self.bound = grain, how, bound
-        self.law = jkr() if law is None else law
+        self.law = law_of(law, jkr)
         self.motion, self.integrator = how.motion, how.integrator
+        if isinstance(self.integrator, SemiImplicit):
+            check_stiffness(self.law, "give epsilon for a spin-up that does not wait, in explicit steps")
         self.records, self.snapshot_every = records, snapshot_every
         self.smaller_steps = 0
         self.steps_goal = np.iinfo(np.int64).max if max_steps is None else int(max_steps)
