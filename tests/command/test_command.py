@@ -86,6 +86,8 @@ def test_two_clusters_collide_from_their_files(tmp_path):
     assert float(said[1]) == pytest.approx(np.mean([row["N_s"].item() for row in found]), rel=1e-3, abs=1e-4)
     assert one.with_name("one_collided.png").read_bytes()[1:4] == b"PNG"
     assert one.with_name("one_collided.html").read_text().startswith("<!doctype html>")
+    slow = run("collide", one, "--material", "silica", "--velocity", "0.001")
+    assert slow.exit_code == 1 and "in which the two do not meet" in slow.stderr
     # the same rotations of one with itself are other collisions
     done = run("collide", one, *how, "--law", "jkr")
     assert done.exit_code == 1 and "give another --out" in done.stderr

@@ -7,11 +7,12 @@ import click
 import numpy as np
 
 from ratd.aggregates.particles import read_particles
+from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.collision.figures.snapshots import PANELS, picture, positions
 from ratd.experiments.collision.files import collision_row
-from ratd.experiments.collision.run import DURATION, at_rest, collide
+from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
 from ratd.experiments.command import aggregate_options, answer, part_done, several
 from ratd.pictures.collision_page import collision_page
 from ratd.pictures.style import save
@@ -45,6 +46,8 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     collisions stand in OUT.nc, the first one as pictures in OUT.png and in 3D in OUT.html. After Ctrl-C the same
     command goes on.
     """
+    if velocity * duration < 2.0 * GAP:
+        raise InputError(too_short(velocity, duration))
     files = [file] if other is None else [file, other]
     grains = [read_particles(path, unit=unit).grain(material) for path in files]
     out = file.with_name(f"{file.stem}_collided") if out is None else out

@@ -1,5 +1,7 @@
 """One collision of two clusters: energies, contacts and pieces against time."""
 
+import warnings
+
 import numpy as np
 
 from ratd.aggregates.grain import Grain
@@ -47,6 +49,14 @@ def at_rest(grain, law="dmt"):
     state = relax(grain, law=law_of(law, dmt), timestep_factor=RELAXATION_STEP)
     position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
     return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+
+
+def too_short(velocity, duration, gap=GAP):
+    """The sentence on a collision that ends before the two have met."""
+    return (
+        f"duration is {duration:g} s, in which the two do not meet: they begin {gap:g} m apart with {velocity:g} m/s; "
+        f"take at least {2.0 * gap / velocity:.2g} s."
+    )
 
 
 def collide(
@@ -112,14 +122,16 @@ def collide(
         If an argument is wrong.
     RuntimeError
         If the balance of energy is off by more than `ratd.experiments.collision.laws.balance_of`.
+
+    Warns
+    -----
+    UserWarning
+        If the two do not meet within the duration.
     """
     law = law_of(law, dmt)
     _check(a, b, velocity, impact_parameter, seed, gap)
-    if is_number(duration) and velocity * duration < 2.0 * gap:
-        raise InputError(
-            f"duration is {duration!r} s, in which the two do not meet: they begin {gap:g} m apart with "
-            f"{velocity:g} m/s; take at least {2.0 * gap / velocity:.2g} s."
-        )
+    if is_number(duration) and duration > 0.0 and velocity * duration < 2.0 * gap:
+        warnings.warn(too_short(velocity, duration, gap), UserWarning, stacklevel=2)
     material = a.material
     radius = np.concatenate([a.radius, b.radius])
     if timestep is None:
