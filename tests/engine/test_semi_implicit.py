@@ -273,7 +273,7 @@ def test_angles_are_counted_for_each_fragment():
 
 
 def test_a_monomer_that_touches_its_own_copy_is_weighed_too():
-    """One sphere in a box of 1.98 radii: a row, in which copies cannot recede but by sliding, which a spin makes."""
+    """One sphere and its copies, a row along x: they keep their distance, and slide on each other when they spin."""
     radius = 30e-9
     box = periodic((1.99 * radius, 1e-6, 1e-6))
     state = new_state(

@@ -171,7 +171,7 @@ def order_blocks(n, pair_i, pair_j, pairs):
 def _adjacency(n, pair_i, pair_j, pairs):
     """Neighbours of each row without repetition: (n + 1,) starts, and their numbers."""
     count = np.zeros(n + 1, dtype=np.int64)
-    # what touches a copy of itself is not its own neighbour: the marks below leave it out, twice in the same place here
+    # a row that is paired with itself fills two places here; the marks below leave it out of its own neighbours
     for k in range(pairs):
         count[np.int64(pair_i[k]) + 1] += 1
         count[np.int64(pair_j[k]) + 1] += 1

@@ -181,12 +181,10 @@ def _add_block(target, at, rows, left, right, k_n, k_s, k_r, k_t):
 
     The rolling stiffness counts for all spins, that of twisting for what is left along n.
     """
-    one, normal, twist = left, load8(rows, _NORMAL), load8(rows, _TWIST)
-    two = one + _PADDED
-    normal = multiply8(spread8(k_n), normal)
-    twist = multiply8(spread8(k_t - k_r), twist)
-    slide_1 = multiply8(spread8(k_s), load8(rows, one))
-    slide_2 = multiply8(spread8(k_s), load8(rows, two))
+    normal = multiply8(spread8(k_n), load8(rows, _NORMAL))
+    twist = multiply8(spread8(k_t - k_r), load8(rows, _TWIST))
+    slide_1 = multiply8(spread8(k_s), load8(rows, left))
+    slide_2 = multiply8(spread8(k_s), load8(rows, left + _PADDED))
     for column in range(3):
         c = np.uint64(column)
         t = at + _PADDED * c

@@ -33,6 +33,8 @@ a velocity that is no finite number."""
 
 
 NEVER = np.iinfo(np.int64).max
+CALL = 100_000
+"""Steps of a call of `advance` at most where somebody waits: Ctrl-C, progress and checkpoints come between calls."""
 
 
 class Until(NamedTuple):

@@ -14,7 +14,7 @@ from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import CONTACTS, DT, RADIUS, STEPS, TIME, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import has_images, monomer_rows, new_state
-from ratd.engine.step import STEPS_DONE, run, until
+from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws.chosen import law_of
 from ratd.laws.jkr_with_springs import jkr
@@ -24,8 +24,6 @@ from ratd.observables.pressure import COMPONENTS
 
 __all__ = ["columns", "evolve"]
 
-CALL = 100_000
-"""Steps of a call of the time loop at most, so that Ctrl-C, a checkpoint and progress need not wait for a record."""
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
 CHECKPOINT_INTERVAL = 60.0

@@ -34,11 +34,11 @@ K_N = 0.01
 SNAPSHOTS = (0.003, 0.01, 0.03, 0.1, 0.3)
 LONG_STEPS = LongSteps()
 BALANCE = {0.1: 0.005, 0.3: 0.002}
-"""From this filling factor on, the balance of energy is to hold to this part of the work of the box with explicit
-steps; where long ones were taken, the part of these may be `LONG_BALANCE` of their work."""
+"""From this filling factor on, the balance of energy is to hold to this part of the work of the box, or of what was
+dissipated, with explicit steps; where long ones were taken, the part of these may be `LONG_BALANCE` of theirs."""
 LONG_BALANCE = {0.1: 0.05}
 EVENTS = 100
-"""Contacts whose energy is taken in place of that work where it is less."""
+"""Contacts whose energy is taken in place of both where they are less."""
 NOT_STATIC = 0.1
 """A run is warned of when it is static only from this filling factor on."""
 

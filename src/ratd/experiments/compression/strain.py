@@ -13,14 +13,12 @@ from ratd.engine.hand_over import hand_over
 from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
 from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import State, monomer_rows
-from ratd.engine.step import STEPS_DONE, run, until
+from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
 
 __all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
 
-CALL = 100_000
-"""Steps of a call of the time loop at most."""
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
 """Wall time [s] between two checkpoints, and two calls of `progress`."""

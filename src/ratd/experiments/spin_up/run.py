@@ -13,7 +13,7 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, STEPS
 from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import copied
-from ratd.engine.step import FEW_CONTACTS, STEPS_DONE, until
+from ratd.engine.step import CALL, FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
@@ -36,8 +36,6 @@ __all__ = ["spin_up"]
 
 CHECKPOINT_INTERVAL = 60.0
 """Wall time [s] between two checkpoints."""
-CALL = 100_000
-"""Steps after which the compiled code comes back, so that Ctrl-C, progress and checkpoints work in a slow run too."""
 BALANCE = 0.05
 """What the balance of energy may lack more after a part of a run, over the work so far, or over the rotation of a solid
 sphere at the cut bound where that is more. A piece that swings back may land in a long step with an overlap that no
