@@ -83,7 +83,7 @@ def _ratd(cluster, law, steps):
 
 def _lammps(cluster, law, steps):
     """The same of LAMMPS."""
-    position, velocity = approach(cluster, cluster, VELOCITY, 0.0, GAP, SEED)
+    position, velocity, _ = approach(cluster, cluster, VELOCITY, 0.0, GAP, SEED)
     radius = np.tile(cluster.radius, 2)
     pair = partial(dmt_coefficients, damping_time=law.viscous_time)
     steps //= SHARE

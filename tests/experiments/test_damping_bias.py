@@ -20,7 +20,7 @@ def start(seed):
     """An MRN cluster that meets itself: radii, positions, velocities, contacts."""
     radii = ratd.mrn(NUMBER, seed, mass_within=None, length_within=None, largest=RADIUS / 4)
     cluster = at_rest(ratd.build_cluster(radii, RADIUS, second_contact=0.5, seed=seed), LAW)
-    position, velocity = approach(cluster, cluster, VELOCITY, 0.0, 20e-9, seed)
+    position, velocity, _ = approach(cluster, cluster, VELOCITY, 0.0, 20e-9, seed)
     pairs = contacts_of(cluster, LAW)
     return np.tile(cluster.radius, 2), position, velocity, np.concatenate([pairs, pairs + NUMBER])
 

@@ -49,6 +49,14 @@ NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
         ({"contacts": [[0, 0]]}, "contacts must be pairs"),
         ({"contacts": [0, 1]}, "contacts must be pairs"),
         ({"contacts": [[0.0, 1.0]]}, "contacts must be pairs"),
+        ({"contacts": [[0, 1], [1, 0]]}, "contacts names the pair 0, 1 more than once"),
+        ({"position": PAIR * 0.0}, "spheres 0 and 1 overlap by 2 of the smaller radius; at most 0.5 is allowed"),
+        ({"position": PAIR * 0.7}, "spheres 0 and 1 overlap by 0.6 of"),
+        (
+            {"box": periodic(1e-10)},
+            "box has an edge of 1e-10 m; with spheres of up to 3e-08 m .* at least 4.5e-08",
+        ),
+        ({"box": periodic(8e-8)}, "spheres 0 and 1 of a neighbouring box overlap by 1.3 of"),
         ({"position": [[0.0, 0, 0]], "radius": [A]}, "timestep is not given; a single sphere needs one"),
     ],
 )

@@ -31,7 +31,7 @@ def test_two_clusters_without_friction(cluster, speed):
         cluster, cluster, speed, 0.2, seed=5, law=law, duration=TIME, timestep=STEP, records=1, relaxed=True,
         snapshot_every=0,
     )  # fmt: skip
-    position, velocity = approach(cluster, cluster, speed, 0.2, 20e-9, 5)
+    position, velocity, _ = approach(cluster, cluster, speed, 0.2, 20e-9, 5)
     radius, mass = np.tile(cluster.radius, 2), np.tile(cluster.mass, 2)
     pair = partial(dmt_coefficients, damping_time=0.5e-9)
     with Spheres(position, radius, SILICA, STEP, pair) as spheres:

@@ -26,6 +26,8 @@ __all__ = ["columns", "evolve"]
 
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
+DEEPEST = 0.5
+"""Two spheres may overlap at the start by at most this part of the smaller radius."""
 CHECKPOINT_INTERVAL = 60.0
 PROGRESS_INTERVAL = 2.0
 """Wall time [s] between two checkpoints, and two calls of `progress`."""
@@ -124,7 +126,7 @@ def evolve(
     Raises
     ------
     InputError
-        If an argument is not usable.
+        If an argument is not usable, or two spheres overlap at the start by more than half of the smaller radius.
     RuntimeError
         If the integration fails, or leaves the balance of energy.
     """
@@ -144,6 +146,7 @@ def evolve(
     if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
     contacts = None if contacts is None else _contacts(contacts, len(radius))
+    touching = _touching(position, radius, box)
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
@@ -156,8 +159,7 @@ def evolve(
     if loaded is not None:
         state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])
     else:
-        if contacts is None:
-            contacts = touching_pairs(position, radius, box)
+        contacts = touching if contacts is None else contacts
         how = {"velocity": velocity, "spin": spin, "kind": kind}
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
@@ -216,7 +218,36 @@ def _contacts(contacts, n):
         good = low >= 0 and high < n and (pairs[itself, 2:] != 0).any(axis=1).all()
     if not good:
         raise InputError(f"contacts must be pairs (k, 2) of different numbers of spheres from 0 to {n - 1}.")
+    turned = pairs[:, 0] > pairs[:, 1]
+    ordered = np.where(turned[:, None], np.hstack([pairs[:, 1::-1], -pairs[:, 2:]]), pairs)
+    pair, count = np.unique(ordered, axis=0, return_counts=True)
+    if (count > 1).any():
+        i, j = pair[count.argmax(), :2]
+        raise InputError(f"contacts names the pair {i}, {j} more than once; name each contact once.")
     return pairs.astype(np.int64)
+
+
+def _touching(position, radius, box):
+    """Pairs that overlap at the start, with images, (k, 5), of which none may do so too deeply."""
+    edges = np.array(box.edges(np.zeros(1)))
+    least = (2.0 - DEEPEST) * radius.max()
+    if edges[0] > 0.0 and edges.min() < least:
+        raise InputError(
+            f"The box has an edge of {edges.min():.3g} m; with spheres of up to {radius.max():.3g} m it must be at "
+            f"least {least:.3g} m."
+        )
+    pairs = touching_pairs(position, radius, box)
+    i, j = pairs[:, :2].T
+    apart = np.linalg.norm(position[i] - position[j] + pairs[:, 2:] * edges, axis=1)
+    depth = (radius[i] + radius[j] - apart) / np.minimum(radius[i], radius[j])
+    if len(pairs) and depth.max() > DEEPEST:
+        worst = depth.argmax()
+        a_copy = " of a neighbouring box" if pairs[worst, 2:].any() else ""
+        raise InputError(
+            f"The spheres {i[worst]} and {j[worst]}{a_copy} overlap by {depth[worst]:.2g} of the smaller radius; "
+            f"at most {DEEPEST:g} is allowed."
+        )
+    return pairs
 
 
 def _materials(material, n):

@@ -5,8 +5,9 @@ import pytest
 from scipy.stats import kstest
 
 from ratd.aggregates.packed_clusters import build_cluster
-from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach, first_touch, random_turn
+from ratd.experiments.collision.fragmentation import fragmentation
+from ratd.experiments.collision.run import collide
 
 A = build_cluster(np.linspace(0.4e-6, 0.1e-6, 12), 1.5e-6, seed=1)
 B = build_cluster(np.full(8, 0.3e-6), 1.5e-6, seed=2)
@@ -31,7 +32,7 @@ def test_turns_are_rotations_in_all_directions():
 
 @pytest.mark.parametrize("impact", [0.0, 0.3, 0.6])
 def test_the_first_surfaces_are_a_gap_apart(impact):
-    position, velocity = approach(A, B, 3.0, impact, 20e-9, 5)
+    position, velocity, meet = approach(A, B, 3.0, impact, 20e-9, 5)
     radius, mass = np.concatenate([A.radius, B.radius]), np.concatenate([A.mass, B.mass])
     n = A.n_monomers
     assert gaps(position, radius, n).min() == pytest.approx(20e-9, rel=1e-6)
@@ -47,7 +48,7 @@ def test_the_first_surfaces_are_a_gap_apart(impact):
         for cluster, place, centre in ((A, position[:n], centres[0]), (B, position[n:], centres[1]))
     )
     assert centres[1][1] - centres[0][1] == pytest.approx(impact * reach, abs=1e-12)
-    assert centres[1][0] > centres[0][0]
+    assert centres[1][0] > centres[0][0] and meet
 
 
 def test_seeds_turn_both():
@@ -62,6 +63,23 @@ def test_seeds_turn_both():
 def test_clusters_that_pass_each_other():
     small = build_cluster([0.1e-6, 0.1e-6], 0.3e-6, seed=1)
     assert first_touch(np.zeros((1, 3)), np.ones(1), np.array([[0.0, 3.0, 0.0]]), np.ones(1), 0.5) == -np.inf
-    with pytest.raises(InputError, match="impact_parameter is 0.999; .* pass each other"):
-        for seed in range(20):
-            approach(small, small, 1.0, 0.999, 1e-10, seed)
+    n = small.n_monomers
+    results = [approach(small, small, 1.0, 0.999, 1e-10, seed) for seed in range(20)]
+    passing = [position for position, _, meet in results if not meet]
+    assert passing
+    for position in passing:
+        ahead = position[n:, 0] - small.radius
+        assert ahead.min() - (position[:n, 0] + small.radius).max() == pytest.approx(1e-10, rel=1e-3)
+        # along their way they never touch
+        beside = np.linalg.norm(position[:n, None, 1:] - position[None, n:, 1:], axis=2)
+        assert (beside > small.radius[:, None] + small.radius[None, :]).all()
+
+
+def test_a_collision_without_contact_is_a_result():
+    small = build_cluster([0.1e-6, 0.1e-6], 0.3e-6, seed=1)
+    seed = next(seed for seed in range(20) if not approach(small, small, 1.0, 0.999, 1e-10, seed)[2])
+    with pytest.warns(UserWarning, match="impact_parameter is 0.999: .* the two pass each other"):
+        run = collide(small, small, 20.0, 0.999, seed, gap=1e-10, duration=5e-8, records=4)
+    whole = fragmentation(run)
+    assert run["n_pieces"].values.tolist() == [2] * 5 and float(whole["N_s"]) == pytest.approx(0.0, abs=1e-12)
+    assert float(whole["X"]) == pytest.approx(0.0, abs=1e-12)

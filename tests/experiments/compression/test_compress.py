@@ -131,6 +131,11 @@ def test_own_aggregates_of_unequal_monomers_are_compressed():
     assert run["pressure"].values[-1] > 0.0
 
 
+def test_a_cluster_of_softer_contacts_is_to_be_grown_anew(cluster):
+    with pytest.raises(ratd.InputError, match="material is 'q-S', in which contacts as deep .* of 'ice' .*: grow it of"):
+        ratd.compress(cluster, 1e-4, 0.3, material="q-S")
+
+
 def test_static_is_what_the_specification_says():
     ice, silicate = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
     for material, radius, expected in ((ice, 1e-7, (2.6e-3, 3.7e-3, 5.3e-3)), (silicate, 6e-7, (0.014, 0.020, 0.028))):

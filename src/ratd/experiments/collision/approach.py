@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ratd.base.errors import InputError
 from ratd.base.jit import jit
 
 __all__ = ["approach", "first_touch", "random_turn"]
@@ -70,11 +69,8 @@ def approach(a, b, velocity, impact_parameter, gap, seed):
     -------
     position, velocities : (n + m, 3) float64 array
         [m] and [m/s], first those of a; the centre of mass of both is in the origin.
-
-    Raises
-    ------
-    InputError
-        If they would pass each other.
+    meet : bool
+        False where they pass each other; they then begin with `gap` along x between them.
     """
     rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(int(seed))))
     places = []
@@ -86,11 +82,9 @@ def approach(a, b, velocity, impact_parameter, gap, seed):
     )
     places[1][:, 1] += impact_parameter * reach
     shift = first_touch(places[0], a.radius, places[1], b.radius, gap)
-    if not np.isfinite(shift):
-        raise InputError(
-            f"impact_parameter is {impact_parameter:g}; with this rotation the clusters pass each other: take a "
-            "smaller one."
-        )
+    meet = bool(np.isfinite(shift))
+    if not meet:
+        shift = (places[0][:, 0] + a.radius).max() - (places[1][:, 0] - b.radius).min() + gap
     places[1][:, 0] += shift
     masses = a.mass.sum(), b.mass.sum()
     position = np.concatenate(places)
@@ -99,4 +93,4 @@ def approach(a, b, velocity, impact_parameter, gap, seed):
     velocities = np.zeros_like(position)
     velocities[: len(a.radius), 0] = velocity * masses[1] / sum(masses)
     velocities[len(a.radius) :, 0] = -velocity * masses[0] / sum(masses)
-    return position, velocities
+    return position, velocities, meet

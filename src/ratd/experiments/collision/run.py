@@ -126,7 +126,7 @@ def collide(
     Warns
     -----
     UserWarning
-        If the two do not meet within the duration.
+        If the two do not meet within the duration, or pass each other.
     """
     law = law_of(law, dmt)
     _check(a, b, velocity, impact_parameter, seed, gap)
@@ -142,7 +142,13 @@ def collide(
         )
     if not relaxed:
         a, b = (at_rest(a, law), at_rest(b, law)) if b is not a else (at_rest(a, law),) * 2
-    position, velocities = approach(a, b, velocity, impact_parameter, gap, seed)
+    position, velocities, meet = approach(a, b, velocity, impact_parameter, gap, seed)
+    if not meet:
+        warnings.warn(
+            f"impact_parameter is {impact_parameter:g}: with the rotations of seed {seed} the two pass each other.",
+            UserWarning,
+            stacklevel=2,
+        )
     contacts = np.concatenate([contacts_of(a, law), contacts_of(b, law) + len(a.radius)])
     energy = impact_energy(a.mass.sum(), b.mass.sum(), velocity)
 

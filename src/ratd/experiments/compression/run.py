@@ -64,7 +64,7 @@ class Cluster:
                 "ratd.grow or ratd.Grain(position, radius, material)."
             )
         if material is not None:
-            cluster = Grain(cluster.position, cluster.radius, get_material(material), seed=cluster.seed)
+            cluster = _of(cluster, get_material(material))
         self.grain = cluster
         self.radius = float(np.mean(cluster.radius**3)) ** (1.0 / 3.0)
         self.time_unit = time_unit(cluster.material, self.radius)
@@ -75,6 +75,17 @@ class Cluster:
     def volume(self):
         """Volume of the monomers [m3]."""
         return 4.0 / 3.0 * math.pi * float(np.sum(self.grain.radius**3))
+
+
+def _of(cluster, material):
+    """The same cluster of another material."""
+    try:
+        return Grain(cluster.position, cluster.radius, material, seed=cluster.seed)
+    except InputError as error:
+        raise InputError(
+            f"material is {material.name!r}, in which contacts as deep as those of this cluster of "
+            f"{cluster.material.name!r} cannot be: grow it of that material. {error}"
+        ) from None
 
 
 def compress(
@@ -104,7 +115,7 @@ def compress(
     until_phi : float
         Filling factor at which to end.
     material : str or Material, optional
-        In place of that of the cluster.
+        In place of that of the cluster; its contacts have to suit it, so that it is best grown of it.
     law : str or part, optional
         Contact law; by default `ratd.laws.jkr` with the constant damping k_n = 0.01. Long steps need one that tells its
         stiffness, which "dmt" does not.
