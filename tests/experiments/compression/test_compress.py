@@ -109,7 +109,7 @@ def test_a_run_is_handed_over_to_explicit_steps(cluster, run):
     # with explicit steps the balance holds
     work, off = early["work"].values, early["energy_residual"].values
     at = np.flatnonzero(~before)[1]
-    assert np.abs((off - off[at]) / (work - work[at]))[-10:].max() < 2e-3
+    assert np.abs((off[-10:] - off[at]) / (work[-10:] - work[at])).max() < 2e-3
 
 
 @pytest.mark.parametrize(
@@ -132,7 +132,9 @@ def test_own_aggregates_of_unequal_monomers_are_compressed():
 
 
 def test_a_cluster_of_softer_contacts_is_to_be_grown_anew(cluster):
-    with pytest.raises(ratd.InputError, match="material is 'q-S', in which contacts as deep .* of 'ice' .*: grow it of"):
+    with pytest.raises(
+        ratd.InputError, match="material is 'q-S', in which contacts as deep .* of 'ice' .* grow it"
+    ):
         ratd.compress(cluster, 1e-4, 0.3, material="q-S")
 
 
