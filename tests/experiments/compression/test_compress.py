@@ -132,9 +132,7 @@ def test_own_aggregates_of_unequal_monomers_are_compressed():
 
 
 def test_a_cluster_of_softer_contacts_is_to_be_grown_anew(cluster):
-    with pytest.raises(
-        ratd.InputError, match="material is 'q-S', in which contacts as deep .* of 'ice' .* grow it"
-    ):
+    with pytest.raises(ratd.InputError, match="material is 'q-S', in which contacts as deep .* of 'ice' .* grow it"):
         ratd.compress(cluster, 1e-4, 0.3, material="q-S")
 
 
