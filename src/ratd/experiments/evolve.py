@@ -22,7 +22,7 @@ from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kin
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
 
-__all__ = ["columns", "evolve"]
+__all__ = ["columns", "evolve", "touching_at_start"]
 
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
@@ -146,7 +146,7 @@ def evolve(
     if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
     contacts = None if contacts is None else _contacts(contacts, len(radius))
-    touching = _touching(position, radius, box)
+    touching = touching_at_start(position, radius, box)
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
@@ -227,7 +227,7 @@ def _contacts(contacts, n):
     return pairs.astype(np.int64)
 
 
-def _touching(position, radius, box):
+def touching_at_start(position, radius, box):
     """Pairs that overlap at the start, with images, (k, 5), of which none may do so too deeply."""
     edges = np.array(box.edges(np.zeros(1)))
     least = (2.0 - DEEPEST) * radius.max()

@@ -9,29 +9,59 @@ from ratd.experiments.spin_up.cells import as_frame, size_key
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, destroyed_sizes
-from ratd.experiments.spin_up.size_law import SPLIT, size_law, unit_of
 
-__all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "power_law", "printed_law", "surviving"]
+__all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "measured_law", "printed_law", "surviving"]
 
 COMPUTED = (50e-9, 550e-9)
 """Sizes [m] that were spun up; beyond them a law is extrapolated."""
 
 
-def power_law(C, p, material):
-    """omega of disruption of `size_law.size_law`, C sqrt(gamma/(rho a0^3)) (a/a0)^-p with a0 = `SPLIT`.
+def measured_law(table, mark, material, kind, draws=0, rng=None):
+    """omega of disruption as it was found: geometric means of each size, along straight lines in ln a.
+
+    A power of size for all sizes misses single ones by up to a sixth, see `size_law`.
 
     Parameters
     ----------
-    C, p : array_like, shape (...)
-    material : Material
+    table : pandas.DataFrame
+        Grains that were spun up, of one drive.
+    mark : str
+        Which omega.
+    material, kind : str
+        Which grains.
+    draws : int
+        How many laws to draw, each mean with its standard error.
+    rng : numpy.random.Generator, optional
+        Draws them.
 
     Returns
     -------
-    callable
-        Of sizes [m] (n,) -> omega [rad s-1] (..., n).
+    best, drawn : callable
+        Of sizes [m] (n,) -> omega [rad s-1] (n,) and (draws, n); the first and the last line also beyond the sizes that
+        were spun up.
     """
-    C, p = np.asarray(C)[..., None], np.asarray(p)[..., None]
-    return lambda size: C * unit_of(material) * (np.asarray(size) / SPLIT) ** -p
+    part = table[(table["material"] == material) & (table["type"] == kind) & (table[mark].astype(float) > 0.0)]
+    value = np.log(part[mark].astype(float))
+    by_size = value.groupby(size_key(part["a_eff"]).to_numpy())
+    mean, error = by_size.mean().sort_index(), by_size.sem().sort_index()
+    if len(mean) < 2:
+        raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up")
+    place = np.log(mean.index.to_numpy() * 1e-12)
+    best = _along_lines(place, mean.to_numpy()[None])
+    spread = error.fillna(0.0).to_numpy() * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
+    return lambda size: best(size)[0], _along_lines(place, mean.to_numpy() + spread)
+
+
+def _along_lines(place, value):
+    """exp of straight lines in ln a through (..., k) values, the first and the last of them also beyond the ends."""
+
+    def found(size):
+        x = np.log(np.asarray(size))
+        k = np.clip(np.searchsorted(place, x) - 1, 0, len(place) - 2)
+        part = (x - place[k]) / (place[k + 1] - place[k])
+        return np.exp((1.0 - part) * value[..., k] + part * value[..., k + 1])
+
+    return found
 
 
 def printed_law(grown, material, kind):
@@ -60,16 +90,11 @@ def printed_law(grown, material, kind):
         raise InputError(f"printed_law: Table 3 has no {material.name} {kind}")
     part = _cell(grown, material.name, kind)
     place, value = _by_size(part, part["n_contacts"] * part["filling_factor"])
-    value = np.log(value)
+    contacts = _along_lines(place, np.log(value))
 
     def omega(size):
-        x = np.log(size)
-        contacts = np.interp(x, place, value)
-        for end, inner, beyond in ((0, 1, x < place[0]), (-1, -2, x > place[-1])):
-            slope = (value[end] - value[inner]) / (place[end] - place[inner])
-            contacts = np.where(beyond, value[end] + slope * (x - place[end]), contacts)
         scale = material.surface_energy, material.density, PAPER_MEAN_RADIUS
-        return eq33(size, *scale, np.exp(contacts), 1.0, *TABLE_3[material.name, kind])
+        return eq33(size, *scale, contacts(size), 1.0, *TABLE_3[material.name, kind])
 
     return omega
 
@@ -135,8 +160,7 @@ def surviving(
     materials : optional
         Table of materials, handed to `ratd.base.materials.get_material`.
     draws, seed : int
-        Of the Monte Carlo draws of C and p of `size_law`, which are taken to be normal and independent (a0 lies in the
-        middle of the sizes).
+        Of the laws that are drawn with the standard errors of the means of `measured_law`.
 
     Returns
     -------
@@ -153,18 +177,13 @@ def surviving(
     """
     table = as_frame(table, "surviving", ("material", "type", "a_eff", mark))
     strengths = np.atleast_1d(np.asarray(strengths, dtype=float))
-    laws = size_law(table, mark, materials).set_index("type")
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
     for name in dict.fromkeys(table["material"]):
         material = get_material(name, materials)
-        for kind, law in laws.iterrows():
-            if not len(table[(table["material"] == name) & (table["type"] == kind)]):
-                continue
+        for kind in dict.fromkeys(table.loc[table["material"] == name, "type"]):
             ratio = grown_inertia(grown, name, kind) if porous else None
-            drawn = np.exp(rng.normal(np.log(law["C"]), law["C_error"] / law["C"], draws))
-            slopes = rng.normal(law["p"], law["p_error"], draws)
-            candidates = {"ours": (power_law(law["C"], law["p"], material), power_law(drawn, slopes, material))}
+            candidates = {"ours": measured_law(table, mark, name, kind, draws, rng)}
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
             for which, (omega, spread) in candidates.items():

@@ -17,6 +17,8 @@ __all__ = ["of_curve", "of_law", "of_prediction"]
 
 EXAMPLE = ("q-S", "BAM1", 400 * NM)
 """The grain of which the document works out omega."""
+LARGER = 150 * NM
+"""Sizes from which on grains have monomers enough for a curve to meet the mean of every size."""
 CURVED = 2.0
 """So many standard errors of q from 0 reject a straight power of size."""
 
@@ -51,6 +53,7 @@ def of_curve(table, grown):
     for kind, row in law.iterrows():
         values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
         values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
+        values |= _farthest(table[table["type"] == kind], kind, row)
         bent += [kind] if abs(row["q"]) > CURVED * row["q_error"] else []
     values["curve.rejected"] = " and ".join(bent) or "no type"
     material, kind, size = EXAMPLE
@@ -64,6 +67,20 @@ def of_curve(table, grown):
         cell["filling_factor"].mean(), *TABLE_3[material, kind],
     )  # fmt: skip
     return values
+
+
+def _farthest(table, kind, row):
+    """The size whose mean is farthest from the curve, by what factor, and the same of the sizes from `LARGER` on."""
+    table = table[table[MARK].astype(float) > 0.0]
+    unit = table["material"].map(lambda name: unit_of(get_material(name))).to_numpy(float)
+    off = np.log(table[MARK].astype(float) / unit / curved_law_value(table["a_eff"], *row[["C", "p", "q"]]))
+    means = off.groupby(np.round(table["a_eff"] / NM)).mean()
+    larger = means[means.index >= LARGER / NM]
+    return {
+        f"curve.{kind} farthest": math.exp(means.abs().max()),
+        f"curve.{kind} farthest nm": int(means.abs().idxmax()),
+        f"curve.{kind} farthest above": math.exp(larger.abs().max()),
+    }
 
 
 def of_prediction(table):

@@ -4,10 +4,15 @@ import numpy as np
 
 from ratd.base.measured import Measured
 from ratd.base.units import NM
-from ratd.experiments.spin_up.surviving import surviving
+from ratd.experiments.spin_up.radiation import infrared_coefficient
+from ratd.experiments.spin_up.surviving import COMPUTED, surviving
 
 __all__ = ["NONE", "of_radiation"]
 
+SILICATE = infrared_coefficient(0.18, 16.4)
+"""F_IR of silicate, where the printed 0.4 is near that of graphite."""
+FARTHEST = 2.0 * COMPUTED[1]
+"""Greatest size [m] that is told: the laws are of grains half as large."""
 NONE = "none"
 """What stands in a document where no size is destroyed."""
 
@@ -28,15 +33,17 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), **options):
     -------
     dict
         "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
-        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain. With
+        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
+        " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With
         " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them.
     """
     values = {}
-    for porous in (False, True):
-        for row in surviving(table, grown, strengths, porous=porous, **options).to_dict("records"):
-            key = f"radiation.{row['material']} {row['type']} {row['strength']:g} {row['law']}"
-            key += " porous" if porous else ""
+    for behind, how in (("", {}), (" porous", {"porous": True}), (" cool", {"coefficient": SILICATE})):
+        for row in surviving(table, grown, strengths, **how, **options).to_dict("records"):
+            key = f"radiation.{row['material']} {row['type']} {row['strength']:g} {row['law']}{behind}"
             for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
                 found = np.isfinite(row[size])
                 values[key + end] = Measured(row[size] / NM, error / NM) if found else NONE
+            if row["a_disr"] > FARTHEST:
+                values[key] = f"over {FARTHEST / NM:.0f}"
     return values
