@@ -179,11 +179,11 @@ def test_measured_law_goes_through_the_means_and_on_beyond_them(table):
     np.testing.assert_allclose(law(size), np.exp(mean), rtol=1e-9)
     assert drawn(size).shape == (4000, len(size))
     np.testing.assert_allclose(np.log(drawn(size)).std(axis=0), error, rtol=0.05)
-    # between two of them, and beyond the last, along the same line
+    # between two of them along a line, and beyond the last along the slope of the next ones
     middle = np.sqrt(size[-1] * size[-2])
     assert law(np.array([middle]))[0] == pytest.approx(np.sqrt(np.prod(law(size[-2:]))), rel=1e-9)
-    steps = np.diff(np.log(law(size[-1] * (size[-1] / size[-2]) ** np.arange(3))))
-    np.testing.assert_allclose(steps, mean.iloc[-1] - mean.iloc[-2])
+    slope = np.polyfit(np.log(size[-4:]), mean.to_numpy()[-4:], 1)[0]
+    np.testing.assert_allclose(np.diff(np.log(law(size[-1] * 2.0 ** np.arange(4)))), slope * np.log(2.0))
     with pytest.raises(InputError, match="fewer than two sizes of co-S BA were spun up"):
         measured_law(own[own["a_eff"] == size[0]], "omega_mass_75", "co-S", "BA")
 

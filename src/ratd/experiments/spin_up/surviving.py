@@ -16,6 +16,10 @@ COMPUTED = (50e-9, 550e-9)
 """Sizes [m] that were spun up; beyond them a law is extrapolated."""
 
 
+OUTER = 4
+"""Sizes from whose means a law is extrapolated."""
+
+
 def measured_law(table, mark, material, kind, draws=0, rng=None):
     """omega of disruption as it was found: geometric means of each size, along straight lines in ln a.
 
@@ -37,8 +41,8 @@ def measured_law(table, mark, material, kind, draws=0, rng=None):
     Returns
     -------
     best, drawn : callable
-        Of sizes [m] (n,) -> omega [rad s-1] (n,) and (draws, n); the first and the last line also beyond the sizes that
-        were spun up.
+        Of sizes [m] (n,) -> omega [rad s-1] (n,) and (draws, n); beyond the sizes that were spun up as the power of the
+        `OUTER` next ones.
     """
     part = table[(table["material"] == material) & (table["type"] == kind) & (table[mark].astype(float) > 0.0)]
     value = np.log(part[mark].astype(float))
@@ -47,9 +51,20 @@ def measured_law(table, mark, material, kind, draws=0, rng=None):
     if len(mean) < 2:
         raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up")
     place = np.log(mean.index.to_numpy() * 1e-12)
-    best = _along_lines(place, mean.to_numpy()[None])
+    best = _along_lines(*_extended(place, mean.to_numpy()[None]))
     spread = error.fillna(0.0).to_numpy() * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
-    return lambda size: best(size)[0], _along_lines(place, mean.to_numpy() + spread)
+    return lambda size: best(size)[0], _along_lines(*_extended(place, mean.to_numpy() + spread))
+
+
+def _extended(place, value):
+    """Places and (k, n) values with a point more beyond each end, along the slope of the `OUTER` next ones."""
+    ends = []
+    for near, far in ((slice(None, OUTER), -1.0), (slice(-OUTER, None), 1.0)):
+        slope = np.polyfit(place[near], value[:, near].T, 1)[0]
+        end = 0 if far < 0.0 else -1
+        ends.append((place[end] + far, value[:, end] + far * slope))
+    (first, before), (last, after) = ends
+    return np.concatenate([[first], place, [last]]), np.column_stack([before, value, after])
 
 
 def _along_lines(place, value):
