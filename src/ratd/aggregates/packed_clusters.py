@@ -69,7 +69,7 @@ def build_cluster(radii, radius, material="silica", *, second_contact=0.0, seed=
     Notes
     -----
     The first sphere is at the centre where the second one then fits beside it, and anywhere else where not: with an
-    MRN sample the largest one at the centre leaves too little room in 45 % of all cases (`docs/collision.md`).
+    MRN sample the largest one at the centre leaves too little room in about half of all cases.
     """
     material = get_material(material)
     radii = _checked(radii, radius, second_contact, seed)

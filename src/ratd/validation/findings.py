@@ -9,7 +9,7 @@ from scipy.stats import kstest
 
 from ratd.base.measured import median
 from ratd.base.statistics import median_of
-from ratd.experiments.compression.findings import of_lammps
+from ratd.experiments.compression.findings import LAMMPS_EDGES, of_lammps
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -219,7 +219,7 @@ def of_energy(table):
 def of_compression(table):
     """Compression beside LAMMPS, see `ratd.experiments.compression.findings.of_lammps`."""
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
-    within = all(abs(found[f"compression.n_contacts_{part}"].value - 1.0) < CONTACTS for part in ("low", "high"))
+    within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in LAMMPS_EDGES[:-1])
     return found | {"compression.verdict": _verdict(within)}
 
 

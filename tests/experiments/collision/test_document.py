@@ -6,9 +6,10 @@ When a claim fails after further collisions: reread the sentence in docs/templat
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from ratd.experiments.collision.document import claims, values, with_error
+from ratd.experiments.collision.document import _calibrated, claims, values, with_error
 from ratd.experiments.collision.tables import findings
 from ratd.pipeline.documents import fill
 from tiny_pipeline import ROOT
@@ -55,3 +56,21 @@ def test_digits():
         and with_error(np.nan, 1.0) == "–"
         and with_error(6.35, 0.222, 1) == "6.3 ± 0.2"
     )
+
+
+def test_the_damping_time_is_fixed_on_one_radius_and_predicts_the_others():
+    """v_frag as a power of A: at which A 0.57 um has the printed 12.5 m/s, and what 0.453 um has there."""
+    rows = [
+        dict(
+            law=f"A{time}", cluster=cluster, friction="velocity", damping_time=time * 1e-9, impact_parameter=0.0,
+            surface_energy=0.025, velocity=level * time**0.5, error=0.01 * level * time**0.5,
+        )
+        for cluster, level in (("570nm", 10.0), ("453nm", 16.0))
+        for time in (0.5, 1.0, 2.0)
+    ]  # fmt: skip
+    table = pd.DataFrame([*rows, rows[0] | {"law": "slide_4", "velocity": 99.0}])
+    found = _calibrated(table)
+    assert float(found["A velocity"].split(" ± ")[0]) == pytest.approx(1.25**2, rel=0.01)
+    value, error = map(float, found["predicted velocity 453nm"].split(" ± "))
+    assert value == pytest.approx(16.0 * 1.25, rel=0.01) and 0.1 < error < 0.5
+    assert _calibrated(table[table["damping_time"] < 1.5e-9]) == {}

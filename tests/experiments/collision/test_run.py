@@ -107,8 +107,14 @@ def test_bad_input_is_refused_in_one_sentence(arguments, words):
     assert "\n" not in str(caught.value)
 
 
-def test_a_step_beyond_what_the_damping_allows_ends_with_the_balance():
-    """The limit of `longest_step` is a quarter of the time of the damping; what is worse is caught by the balance."""
+def test_a_collision_that_leaves_the_balance_ends_with_an_error(monkeypatch):
+    monkeypatch.setattr("ratd.experiments.collision.run.balance_of", lambda law: 1e-9)
+    with pytest.raises(RuntimeError, match="the balance of energy is off by .* allowed are 0.0% of"):
+        collide(SMALL, SMALL, 5.0, relaxed=True, duration=3e-8, records=3, snapshot_every=0)
+
+
+def test_steps_and_balances_that_are_allowed():
+    """The limit of `longest_step` is a quarter of the time of the damping."""
     radius = np.array([50e-9, 1e-6])
     law = ratd.laws.dmt()
     assert step_of(radius, SILICA, law) < longest_step(radius, SILICA, law)

@@ -7,7 +7,7 @@ import ratd
 from ratd.aggregates.strength import rolling_pressure
 from ratd.experiments.compression import strain as strain_module
 from ratd.experiments.compression.run import Cluster
-from ratd.experiments.compression.static import box_rate, static_from, time_unit
+from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, static_from, time_unit
 from ratd.experiments.compression.strain import strain_dataset
 
 HOW = {"strain_rate": 3e-5, "until_phi": 0.25}
@@ -136,6 +136,15 @@ def test_a_cluster_of_softer_contacts_is_to_be_grown_anew(cluster):
         ratd.compress(cluster, 1e-4, 0.3, material="q-S")
 
 
+def test_speeds_and_the_filling_factor_of_a_cluster_are_as_printed():
+    """Eqs. 24, 26 and 28 of Kataoka et al. (2013), for ice."""
+    ice = ratd.MATERIALS["ice"]
+    rate = box_rate(3e-7, time_unit(ice, 1e-7))
+    found = [100.0 * face_speed(rate, 16384, 1e-7, phi) for phi in (1e-3, 1e-2, 1e-1)]
+    assert found == pytest.approx([12.7, 5.9, 2.7], rel=0.02)
+    assert filling_factor_bcca(16384) == pytest.approx(3e-3, rel=0.25)
+
+
 def test_static_is_what_the_specification_says():
     ice, silicate = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
     for material, radius, expected in ((ice, 1e-7, (2.6e-3, 3.7e-3, 5.3e-3)), (silicate, 6e-7, (0.014, 0.020, 0.028))):
@@ -193,6 +202,21 @@ def test_a_pulled_cluster_comes_apart(run):
     assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
 
 
+def test_an_aggregate_that_fills_a_box_is_pulled_as_the_compression_is(run):
+    """The same spheres without their history: what they slid and rolled is forgotten, so only nearly the same."""
+    cluster = ratd.Grain(run["position"].values, run["radius"].values, "ice")
+    edge = float(run["box_length"].values[-1, 0])
+    pulled, beside = ratd.stretch(cluster, 3e-5, box_length=edge), ratd.stretch(run, 3e-5)
+    assert pulled.attrs["phi_start"] == pytest.approx(beside.attrs["phi_start"], rel=1e-9)
+    assert pulled.attrs["tensile_strength"] == pytest.approx(beside.attrs["tensile_strength"], rel=0.5)
+    with pytest.raises(ratd.InputError, match="box_length belongs to a ratd.Grain"):
+        ratd.stretch(run, box_length=edge)
+    with pytest.raises(ratd.InputError, match="box_length belongs to a ratd.Grain"):
+        ratd.stretch(cluster)
+    with pytest.raises(ratd.InputError, match="does not touch its copies"):
+        ratd.stretch(cluster, box_length=10.0 * edge)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -203,7 +227,7 @@ def test_a_pulled_cluster_comes_apart(run):
 def test_bad_input_of_a_pull_is_one_sentence(run, arguments, said):
     with pytest.raises(ratd.InputError, match=said):
         ratd.stretch(run, **arguments)
-    with pytest.raises(ratd.InputError, match="compressed must be what ratd.compress returned"):
+    with pytest.raises(ratd.InputError, match="compressed must be a ratd.Grain, or what ratd.compress returned"):
         ratd.stretch(run[["phi"]])
 
 

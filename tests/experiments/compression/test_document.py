@@ -48,6 +48,15 @@ def test_a_number_that_changes_flips_the_verdict_on_it(values):
     assert findings({"fiducial": fiducial}, None, None)["exponent"] == "below 3"
 
 
+def test_it_lies_where_an_independent_code_finds_it(values):
+    """Of ice, 1024 monomers, explicit steps; what that code found stands in the document."""
+    for name in ("beside_3e-6", "beside_1e-5"):
+        assert values[f"{name}.n"] >= 5 and values[f"{name}.N"] == 1024
+        assert values[f"{name}.ratio_0.1"].value == pytest.approx(0.95, abs=0.20)
+        assert values[f"{name}.exponent"].value == pytest.approx(3.1, abs=0.3)
+    assert values["beside_3e-6.gyration"].value == pytest.approx(37.0, abs=2.0)
+
+
 def test_missing_data_are_one_sentence(tmp_path):
     with pytest.raises(ratd.FileError, match="holds no fiducial.nc"):
         document.read_data(tmp_path)

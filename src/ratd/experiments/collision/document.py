@@ -9,7 +9,7 @@ import numpy as np
 from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.figures.look import is_equal
-from ratd.experiments.collision.figures.scaling import WIDEST
+from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
@@ -30,7 +30,7 @@ def with_error(mean, error, digits=None):
     if not (np.isfinite(error) and error > 0.0):
         return f"{mean:.2f}" if digits is None else f"{mean:.{digits}f}"
     if digits is None:
-        digits = min(3, max(0, 1 - int(np.floor(np.log10(error)))))
+        digits = min(3 if error >= 0.0005 else 4, max(0, 1 - int(np.floor(np.log10(error)))))
     return f"{mean:.{digits}f} ± {error:.{digits}f}"
 
 
@@ -77,6 +77,7 @@ def values(table, thresholds, likeness):
         found[f"radius {key}"], found[f"q {key}"] = _alike(row)
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
+    found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _exponents(thresholds)
     found |= free_samples()
     found |= {
@@ -85,6 +86,46 @@ def values(table, thresholds, likeness):
         "worst balance spring": f"{100 * table.loc[table['friction'] == 'spring', 'balance'].max():.1f} %",
     }
     found |= {f"q of {radius * 1e6:g}": f"{moment_of_length(radius):.2f}" for radius in RADII}
+    return found
+
+
+def _calibrated(thresholds):
+    """The damping time A at which v_frag of 0.57 um is the printed one, and what that predicts of the other two.
+
+    ``A FRICTION``: A [ns] for the friction "velocity" or "spring"; ``predicted FRICTION 453nm``: v_frag [m/s]. Between
+    the A that were tried v_frag is linear in the logarithms of both; errors are those of the v_frag.
+    """
+    found = {}
+    own = thresholds[
+        ~thresholds["law"].isin(VARIED)
+        & (thresholds["impact_parameter"] == 0)
+        & np.isclose(thresholds["surface_energy"], 0.025)
+    ].dropna(subset=["velocity"])
+    for friction, part in own.groupby("friction"):
+        curves = {name: one.sort_values("damping_time") for name, one in part.groupby("cluster")}
+        known = curves.get("570nm")
+        if friction not in ("velocity", "spring") or known is None:
+            continue
+        rng = np.random.Generator(np.random.PCG64(0))
+        wanted = np.log(PRINTED_THRESHOLDS[RADII[-1]])
+        speed, error = (known[name].to_numpy() for name in ("velocity", "error"))
+        if len(known) < 2 or not (np.diff(speed) > 0.0).all() or not speed[0] < np.exp(wanted) < speed[-1]:
+            continue
+        time = np.log(known["damping_time"].to_numpy())
+        drawn = np.log(speed * (1.0 + error / speed * rng.normal(size=(1000, len(speed)))))
+        drawn = np.sort(drawn, axis=1)
+        times = np.array([np.interp(wanted, row, time) for row in drawn])
+        best = np.interp(wanted, np.log(speed), time)
+        found[f"A {friction}"] = with_error(1e9 * np.exp(best), 1e9 * np.exp(best) * times.std(), 2)
+        for name, other in curves.items():
+            at = np.log(other["damping_time"].to_numpy())
+            if name == "570nm" or len(other) < 2 or best > at[-1]:
+                continue
+            level = np.log(other["velocity"].to_numpy())
+            spread = other["error"].to_numpy() / other["velocity"].to_numpy()
+            several = [np.interp(time_drawn, at, level + spread * rng.normal(size=len(level))) for time_drawn in times]
+            value = np.exp(np.interp(best, at, level))
+            found[f"predicted {friction} {name}"] = with_error(value, value * np.std(several), 1)
     return found
 
 
@@ -136,6 +177,7 @@ def _exponents(thresholds):
     """Powers with which v_frag and v_stick go with the radius, and at 0.57 um with the surface energy; A = 0.5 ns."""
     own = thresholds[
         (thresholds["friction"] == "velocity")
+        & ~thresholds["law"].isin(VARIED)
         & (thresholds["impact_parameter"] == 0)
         & np.isclose(thresholds["damping_time"], 0.5e-9, atol=0.0)
         & thresholds["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])
@@ -147,7 +189,7 @@ def _exponents(thresholds):
     ):
         for word, column in (("", "velocity"), (" stick", "sticking_velocity")):
             line, cover = np.polyfit(np.log(part[x]), np.log(part[column]), 1, cov=True)
-            found[f"exponent {name}{word}"] = with_error(line[0], np.sqrt(cover[0, 0]), 1)
+            found[f"exponent {name}{word}"] = with_error(line[0], np.sqrt(cover[0, 0]))
     return found
 
 
@@ -201,6 +243,7 @@ def claims(table, thresholds, likeness):
 
     unequal = table[~is_equal(table)]
     ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
+    ratios = ratios[~ratios["law"].isin(VARIED)]
     ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
     ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
         subset="sticking_velocity"

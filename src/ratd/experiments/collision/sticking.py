@@ -90,8 +90,8 @@ def sticking_velocity(a_i, a_j, material, damping_time):
 
     Notes
     -----
-    Close to it they part ever more slowly, which the limit of time would take for sticking; so it is where the velocity
-    of parting, squared, extrapolates to 0.
+    Close to it they part ever more slowly, which the limit of time would take for sticking; so it is where they part
+    with a millionth of the velocity that the energy of the contact would give them.
     """
     if damping_time == 0.0:
         return 0.0

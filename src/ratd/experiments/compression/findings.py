@@ -1,5 +1,6 @@
 """Every number that docs/compression.md tells, from the tables of the compression."""
 
+import itertools
 import math
 
 import numpy as np
@@ -9,18 +10,24 @@ from ratd.aggregates.strength import (
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
     midplane_tension,
+    rolling_pressure,
+    sound_speed_kataoka2013,
 )
+from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.base.materials import get_material
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.figures.tension import in_units
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
+from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
     NEAR,
+    along_axes,
     anisotropy,
+    compared,
+    far_slope_of_structure,
     fit_power_law,
     fit_with_limit,
-    log_slope,
     of_means,
     overtakes,
     phi_at,
@@ -37,11 +44,20 @@ AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
+STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
+"""Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
+LAMMPS_EDGES = (0.01, 0.02, 0.03, 0.05, 0.12, 0.4)
+"""Filling factors between which LAMMPS is compared."""
 TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
-WAYS = ("rolling", "twisting", "sliding", "damping")
+WAYS = ("rolling", "twisting", "sliding", "damping", "made")
+"""Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
+BY_SIZE = ("n_1024", "fiducial", "n_16384")
+"""Sets that differ in the number of monomers, the fewest first."""
+PAPER_N = 16384
+"""Monomers in the clusters of most sets of the paper."""
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
 BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit"}
@@ -55,6 +71,8 @@ def of_set(name, table):
     found["rate"] = float(table["strain_rate"].values[0])
     found["static"] = float(table["static_from"].values[0])
     found["P0"] = float(table["rolling_pressure"].values[0])
+    found["E_roll"] = found["P0"] * table["monomer_radius"].item() ** 3
+    found["t_0"] = table["time_unit"].item()
     found["start"] = float(np.mean(table["phi_start"].values))
     gyration, error = table["mean_square_gyration"].item(), table["mean_square_gyration_error"].item()
     root = math.sqrt(gyration)
@@ -65,11 +83,13 @@ def of_set(name, table):
         found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
         found[f"scatter_{phi:g}"] = scatter_at(table, phi)
         k = _bin_at(table, phi)
-        found[f"contacts_{phi:g}"] = float(np.mean(table["n_contacts"].values[:, k]) / found["N"])
+        contacts = table["n_contacts"].values[:, k] / found["N"]
+        found[f"contacts_{phi:g}"] = Measured(*mean_of(contacts[np.isfinite(contacts)]))
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
-        found[f"anisotropy_{phi:g}"] = float(np.mean(np.abs(anisotropy(table)[max(k - 3, 0) : k + 4])))
+        found[f"anisotropy_{phi:g}"] = float(np.mean(anisotropy(table)[max(k - 3, 0) : k + 4]))
+        found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), _several(along_axes(table, phi)), strict=True))
         for way in WAYS:
-            found[f"{way}_{phi:g}"] = share_at(table, way, phi)
+            found[f"{way}_{phi:g}"] = _measured(share_at(table, way, phi))
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
     if last * NEAR > FIT_RANGE[1]:
         exponent, at, ratio = _several(fit_power_law(table))
@@ -80,12 +100,12 @@ def of_set(name, table):
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
     part = np.abs(table["energy_residual"].values / table["work"].values)
-    for phi in [phi for phi in (0.1, 0.3) if phi < last]:
+    for phi in [phi for phi in (0.03, 0.1, 0.3) if phi < last]:
         found[f"residual_{phi:g}"] = float(np.nanmax(part[:, table["phi"].values > phi]))
     for k, phi in enumerate(table["snapshot_phi"].values):
         nominal = f"{float(f'{phi:.1g}'):g}"
-        found[f"slope_{nominal}"] = slope_of_structure(table, k)
-        found[f"far_slope_{nominal}"] = _far_slope(table, k)
+        found[f"slope_{nominal}"] = _measured(slope_of_structure(table, k))
+        found[f"far_slope_{nominal}"] = _measured(far_slope_of_structure(table, k))
     if last > 0.4:
         found |= _with_limit(table, min(0.5, last))
     found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
@@ -109,13 +129,6 @@ def _solved(pressure, rolling_pressure):
     return float(np.interp(pressure, compressive_strength_tatsuuma2023(phi, rolling_pressure), phi))
 
 
-def _far_slope(table, snapshot):
-    """Slope of N(<r) over the last distances that stand in the table at a snapshot."""
-    number = table["number_within"].values[:, snapshot]
-    last = np.flatnonzero(np.isfinite(number).any(axis=0))[-4:]
-    return log_slope(table["distance"].values[last], number[:, last])
-
-
 def _measured(fit):
     return Measured(float(fit.value[0]), float(fit.error[0]))
 
@@ -127,14 +140,17 @@ def _several(fit):
 def of_monomers(equal, tables):
     """P over what each length predicts, geometric mean over the range of the fit, and over that of equal monomers."""
     found = {}
-    reference = fit_power_law(equal).value[2]
+    reference = _several(fit_power_law(equal))[2]
     for name, table in tables.items():
         own = _several(fit_power_law(table))[2]
         predicted = predicted_pressures(table, equal)
+        # l^6 goes with the cube of r_g^2, of both
+        of_widths = [3.0 * each["mean_square_gyration_error"] / each["mean_square_gyration"] for each in (table, equal)]
         for length in LENGTHS:
-            ratio = own.value * table["rolling_pressure"].values[0] / predicted[length]
-            factor = ratio / own.value
-            found[f"{name}.over_{length}"] = Measured(ratio / reference, own.error * factor / reference)
+            ratio = own.value * table["rolling_pressure"].values[0] / predicted[length] / reference.value
+            parts = [own.error / own.value, reference.error / reference.value]
+            parts += [float(part) for part in of_widths] if length == "derived" else []
+            found[f"{name}.over_{length}"] = Measured(ratio, ratio * math.hypot(*parts))
         found[f"{name}.length"] = math.sqrt(
             table["mean_square_gyration"].item() / equal["mean_square_gyration"].item()
         ) * (equal["monomer_radius"].item() / table["monomer_radius"].item())
@@ -158,7 +174,8 @@ def of_steps(tables):
     found = {}
     for name, table in tables.items():
         same = [seeds.index(seed) for seed in table["seed"].values]
-        for column, where in (("pressure", fitted), ("n_contacts", end), ("work", end), ("dissipated_rolling", end)):
+        told = [("pressure", fitted), *((name, end) for name in ("n_contacts", "work", *STEPS_WAYS))]
+        for column, where in told:
             own, other = (
                 each[column].values[:, [_bin_at(each, value) for value in where]].mean(axis=1)
                 for each in (table, explicit)
@@ -170,6 +187,41 @@ def of_steps(tables):
             found[f"{name}.over_pressure_{value:g}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
         found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
     return found
+
+
+def of_closed_formulae():
+    """What the paper reckons for ice without a simulation: speeds [cm/s], and the filling factor of a cluster."""
+    ice = get_material("ice")
+    radius = MONOMER_RADIUS["ice"]
+    rate = box_rate(3e-7, time_unit(ice, radius))
+    P_0 = rolling_pressure(ice.surface_energy, ice.critical_rolling_displacement, radius)
+    found = {f"v_d_{phi:g}": 100.0 * face_speed(rate, PAPER_N, radius, phi) for phi in (0.001, 0.01, 0.1)}
+    found["sound"] = 100.0 * float(sound_speed_kataoka2013(1.0, P_0, ice.density))
+    return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
+
+
+def of_pairs(sets):
+    """Each set over the one that it is compared with, of the clusters that both have; and each size over the next."""
+    found = {}
+    for name, table in sets.items():
+        beside = _beside(name)
+        if name == beside or not name.startswith(("k_n", "xi", "rate")) or beside not in sets:
+            continue
+        ratio, steeper = _several(compared(table, sets[beside]))
+        found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
+    for name, larger in itertools.pairwise(BY_SIZE):
+        for phi in (0.01, 0.02, 0.03, 0.05):
+            if {name, larger} <= set(sets):
+                own, other = (_measured(ratio_at(sets[each], phi)) for each in (name, larger))
+                ratio = own.value / other.value
+                error = abs(ratio) * math.hypot(own.error / own.value, other.error / other.value)
+                found[f"{name}.over_larger_{phi:g}"] = Measured(ratio, error)
+    return found
+
+
+def _beside(name):
+    """The set that one is compared with."""
+    return next((other for start, other in BESIDE.items() if name.startswith(start)), "fiducial")
 
 
 def _near(table, phi):
@@ -198,6 +250,9 @@ def of_tension(entries):
                 found[f"tension_{way}.{key}"] = Measured(*mean_of((strength / formula)[here]))
                 found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
                 found[f"tension_{way}.n_{key}"] = int(here.sum())
+                found[f"tension_{way}.held_{key}"] = int((strength[here] > 0.0).sum())
+                pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
+                found[f"tension_{way}.residual_{key}"] = Measured(*mean_of(pressed))
             fitted = own & (phi >= TENSION_FROM)
             if len(np.unique(phi[fitted])) > 1:
                 x, y, seed = np.log(phi[fitted]), np.log(strength[fitted]), entries["seed"].values[fitted]
@@ -259,13 +314,16 @@ def of_lammps(table):
         Of the kind ``validation_compression``.
     """
     found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
-    for name, low, high in (("low", 0.04, 0.12), ("high", 0.12, 0.4)):
+    found["lammps.rate"] = float(table["strain_rate"].iloc[0])
+    for low, high in itertools.pairwise(LAMMPS_EDGES):
+        name = f"{low:g}"
         part = table[(table["phi"] > low) & (table["phi"] < high)]
         over = part.assign(pressure=part["pressure"] / part["line"])
         mean = over.groupby(["seed", "code"])[["pressure", "n_contacts"]].mean().unstack("code")
-        for column in ("pressure", "n_contacts"):
-            ratio = mean[column]["LAMMPS"] / mean[column]["ratd"]
-            found[f"lammps.{column}_{name}"] = Measured(*mean_of(ratio.to_numpy()))
+        both = mean["pressure"][["LAMMPS", "ratd"]].to_numpy()
+        found[f"lammps.pressure_{name}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
+        ratio = mean["n_contacts"]["LAMMPS"] / mean["n_contacts"]["ratd"]
+        found[f"lammps.n_contacts_{name}"] = Measured(*mean_of(ratio.to_numpy()))
     return found
 
 
@@ -281,9 +339,9 @@ def verdicts(values, sets):
     found["exponent"] = "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
     for name, phi in (("fiducial", 0.1), (HIGH, 0.48)):
         if f"{name}.rolling_{phi:g}" in values:
-            found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"])
+            found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
     for name in sets:
-        beside = next((other for start, other in BESIDE.items() if name.startswith(start)), "fiducial")
+        beside = _beside(name)
         if name != beside and {f"{name}.ratio", f"{beside}.ratio"} <= set(values):
             found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
     if "xi_p48_32" in values:
@@ -318,6 +376,10 @@ def findings(sets, entries, spun, lammps=None):
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
     for name, table in sets.items():
         values |= of_set(name, table)
+    values |= of_pairs(sets)
+    values["worst_residual"], values["worst_set"] = max(
+        (values[f"{name}.residual_0.1"], name) for name in sets if f"{name}.residual_0.1" in values
+    )
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["fiducial"]), unequal)
     if "explicit" in sets:
@@ -330,10 +392,12 @@ def findings(sets, entries, spun, lammps=None):
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )
+    values |= of_closed_formulae()
     if HIGH in sets:
         # of a cluster over N^(1/2) r_0; the pressure that Sect. 4 of the paper derives goes with its sixth power
-        values["width"] = values[f"{HIGH}.gyration"].value / math.sqrt(values[f"{HIGH}.N"])
-        values["width_6"] = values["width"] ** 6
+        width, error = (number / math.sqrt(values[f"{HIGH}.N"]) for number in values[f"{HIGH}.gyration"])
+        values["width"] = Measured(width, error)
+        values["width_6"] = Measured(width**6, 6.0 * width**5 * error)
     if entries is not None:
         values |= of_tension(entries)
     if lammps is not None:

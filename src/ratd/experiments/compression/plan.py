@@ -63,7 +63,7 @@ def check(config, schemas="config/schema"):
     """
     shared, own, materials = configs.section(config, "compression", schemas)
     plan = Plan(own, materials, shared["results"])
-    configs.together(*(partial(_check_names, plan, name) for name in plan.figures))
+    configs.together(*(partial(_check_names, plan, name) for name in plan.figures), partial(_check_further, plan))
     configs.together(*(partial(_check_set, plan, name) for name in plan.sets))
     return plan
 
@@ -77,6 +77,15 @@ def _check_names(plan, figure):
     for wanted in plan.sets_of(figure):
         if wanted not in plan.config["sets"]:
             raise InputError(f"{where} set {wanted!r}; allowed: {', '.join(plan.config['sets'])}")
+
+
+def _check_further(plan):
+    """Raise InputError unless there are the sets of `further_sets`."""
+    for wanted in plan.config["further_sets"]:
+        if wanted not in plan.config["sets"]:
+            raise InputError(
+                f"config: compression.further_sets names the set {wanted!r}; allowed: {', '.join(plan.config['sets'])}"
+            )
 
 
 def _check_set(plan, name):
@@ -112,8 +121,9 @@ class Plan:
 
     @property
     def sets(self):
-        """Names of the sets that the figures need, list of str."""
-        return list(dict.fromkeys(wanted for name in self.figures for wanted in self.sets_of(name)))
+        """Names of the sets that the figures need, and of those that have a table alone, list of str."""
+        of_figures = [wanted for name in self.figures for wanted in self.sets_of(name)]
+        return list(dict.fromkeys((*of_figures, *self.config["further_sets"])))
 
     def sets_of(self, figure):
         """Names of the sets of which a figure is drawn, or whose clusters are pulled for it."""
@@ -202,6 +212,7 @@ class Plan:
 
     @property
     def tables(self):
-        """Files of all tables that the figures are drawn from, list of str."""
+        """Files of all tables, list of str."""
         files = [path for name in self.figures for paths in self.figure_input(name).values() for path in paths]
+        files += [TABLE.format(set=wanted) for wanted in self.config["further_sets"]]
         return list(dict.fromkeys(files))

@@ -36,7 +36,7 @@ LONG_STEPS = LongSteps()
 BALANCE = {0.1: 0.005, 0.3: 0.002}
 """From this filling factor on, the balance of energy is to hold to this part of the work of the box, or of what was
 dissipated, with explicit steps; where long ones were taken, the part of these may be `LONG_BALANCE` of theirs."""
-LONG_BALANCE = {0.1: 0.05}
+LONG_BALANCE = {0.05: 0.1, 0.1: 0.05}
 EVENTS = 100
 """Contacts whose energy is taken in place of both where they are less."""
 NOT_STATIC = 0.1
@@ -186,7 +186,7 @@ def compress(
     def tell(row, seconds_to_go):
         progress(row["phi_mean"], row["pressure"], seconds_to_go)
 
-    check = _check_balance if balance else None
+    check = balance_check(BALANCE, LONG_BALANCE) if balance else None
     how = {"snapshots": wanted, "check": check, "tell": tell if progress else None, "later": later}
     state, rows, kept = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
     run = strain_dataset(state, rows, parts)
@@ -277,25 +277,40 @@ def _static_from(cluster, box):
     return static
 
 
-def _check_balance(row, before, long):
-    shares = LONG_BALANCE if long else BALANCE
-    allowed = [share for phi, share in shares.items() if row["phi"] >= phi]
-    if not allowed:
-        return
-    lost = [name for name in row if name.startswith("dissipated_")]
-    work, off, gone = (
-        sum(row[name] - (0.0 if before is None else before[name]) for name in names)
-        for names in (["work"], ["energy_residual"], lost)
-    )
-    # Few monomers attract each other as much as the box presses: its work is near 0, what they dissipate is not. At
-    # first nothing moves but single contacts, whose energy is that which the step can miss by a part.
-    held = sum(abs(row[name]) for name in row if name.startswith("stored_"))
-    moved = max(abs(work), gone, EVENTS * held / max(row["n_contacts"], 1.0))
-    if not abs(off) <= allowed[-1] * moved:
-        raise RuntimeError(
-            f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are {allowed[-1]:.1%} of "
-            f"the {moved:.3g} J that the box worked or friction took: take a smaller time step"
+def balance_check(explicit, long):
+    """A function of a record that raises RuntimeError where the balance of energy is off by too much.
+
+    Parameters
+    ----------
+    explicit, long : dict of float to float
+        Filling factor -> part of what moved that is allowed from there on, with explicit steps and with long ones.
+
+    Returns
+    -------
+    callable
+        ``(row, before, long)``: the record, that from which on it counts, and whether its steps are long.
+    """
+
+    def check(row, before, in_long_steps):
+        shares = long if in_long_steps else explicit
+        allowed = [share for phi, share in shares.items() if row["phi"] >= phi]
+        if not allowed:
+            return
+        lost = [name for name in row if name.startswith("dissipated_")]
+        work, off, gone = (
+            sum(row[name] - before[name] for name in names) for names in (["work"], ["energy_residual"], lost)
         )
+        # Few monomers attract each other as much as the box presses: its work is near 0, what they dissipate is not.
+        # At first nothing moves but single contacts, whose energy is that which the step can miss by a part.
+        held = sum(abs(row[name]) for name in row if name.startswith("stored_"))
+        moved = max(abs(work), gone, EVENTS * held / max(row["n_contacts"], 1.0))
+        if not abs(off) <= allowed[-1] * moved:
+            raise RuntimeError(
+                f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are "
+                f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: take a smaller time step"
+            )
+
+    return check
 
 
 def _add_snapshots(run, kept, wanted):

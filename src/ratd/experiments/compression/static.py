@@ -4,7 +4,7 @@ import math
 
 from ratd.laws.johnson_kendall_roberts import contact_time
 
-__all__ = ["INERTIAL_SHARE", "box_rate", "static_from", "time_unit"]
+__all__ = ["INERTIAL_SHARE", "box_rate", "box_size", "face_speed", "filling_factor_bcca", "static_from", "time_unit"]
 
 INERTIAL_SHARE = 0.05
 """Part of P_0 phi^3 that the pressure of the inertia may be where a compression counts as static."""
@@ -37,6 +37,26 @@ def box_rate(strain_rate, time_unit):
     return -2.0 * strain_rate / time_unit
 
 
+def box_size(n, monomer_radius, filling_factor):
+    """Edge L = (4/3 pi N/phi)^(1/3) r_0 [m] of the box that N monomers of the radius r_0 [m] fill to phi."""
+    return (4.0 / 3.0 * math.pi * n / filling_factor) ** (1.0 / 3.0) * monomer_radius
+
+
+def face_speed(rate, n, monomer_radius, filling_factor):
+    """v_d = |H| L [m/s], with which two opposite faces of the box approach each other.
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Eq. 26.
+    """
+    return abs(rate) * box_size(n, monomer_radius, filling_factor)
+
+
+def filling_factor_bcca(n):
+    """phi = (3/5)^(3/2) N^(-1/2) of a cluster with r_g = N^(1/2) r_0; Kataoka et al. (2013), A&A 554, A4, Eq. 24."""
+    return 0.6**1.5 / math.sqrt(n)
+
+
 def static_from(rate, n, monomer_radius, density, rolling_pressure):
     """Filling factor from which on inertia is small: rho (H L)^2/8 = 0.05 P_0 phi^3.
 
@@ -59,9 +79,9 @@ def static_from(rate, n, monomer_radius, density, rolling_pressure):
 
     Notes
     -----
-    rho = rho_0 phi and L = (4/3 pi N/phi)^(1/3) r_0. A box of the size L that shrinks at the rate H carries the mean
+    rho = rho_0 phi, and L is that of `box_size`. A box of the size L that shrinks at the rate H carries the mean
     square speed (H L)^2/4 along each axis at its faces, of which the mean over the box is a third; rho (H L)^2/8 is by
     how much the pressure differs between a box that carries everything along and one in which monomers fly straight.
     """
-    size = (4.0 / 3.0 * math.pi * n) ** (1.0 / 3.0) * monomer_radius
+    size = box_size(n, monomer_radius, 1.0)
     return (density * (rate * size) ** 2 / (8.0 * INERTIAL_SHARE * rolling_pressure)) ** 0.375

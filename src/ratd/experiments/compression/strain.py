@@ -87,8 +87,9 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     snapshots : sequence of int
         Numbers of the records at which positions are kept.
     check : callable, optional
-        ``check(row, before, long)``, dicts of a record and of the last one of long steps, where explicit ones have
-        followed, and whether its steps are long ones; raises where something is wrong.
+        ``check(row, before, long)``, dicts of a record and of that which its balance of energy begins with, the start
+        or the last one of long steps where explicit ones have followed, and whether its steps are long ones; raises
+        where something is wrong.
     stop : callable, optional
         ``stop(rows)``: whether to end before the last mark, of the table of records, (m, columns).
     tell : callable, optional
@@ -130,7 +131,9 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         if number in snapshots:
             kept.append(positions(state))
         if check is not None:
-            check(as_dict(rows[-1]), as_dict(rows[change]) if number > change else None, long)
+            # the first record has the energy at the start in place of a residual
+            before = as_dict(rows[change]) if number > change else as_dict(rows[0]) | {"energy_residual": 0.0}
+            check(as_dict(rows[-1]), before, long)
         now = clock.monotonic()
         if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
             checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)

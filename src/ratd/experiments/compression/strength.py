@@ -7,6 +7,7 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 from ratd.base.statistics import jackknife_error
+from ratd.observables.energy import DISSIPATED
 from ratd.experiments.compression.tables import BIN, bins, in_bins
 
 __all__ = [
@@ -28,6 +29,8 @@ FIT_RANGE = (0.03, 0.12)
 """Filling factors between which the power law is fitted."""
 LIMIT_RANGE = (0.1, 0.5)
 """Filling factors between which the law with a greatest filling factor is fitted."""
+FARTHEST = 4
+"""Distances of N(<r) over which the slope far away is taken."""
 NEAR = 1.11
 """A value at phi is that of all bins from phi/NEAR to phi NEAR."""
 
@@ -189,11 +192,10 @@ def rates(table, ways):
 
 
 def share_at(table, way, phi):
-    """Part of what rolling, twisting, sliding and damping have dissipated up to phi that went one way, a float."""
+    """Part of all the energy lost up to phi that went one way, `Fit` of one number."""
     k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
-    ways = ("damping", "sliding", "rolling", "twisting")
-    energy = {name: float(np.nanmean(table[f"dissipated_{name}"].values[:, k])) for name in ways}
-    return energy[way] / sum(energy.values())
+    lost = np.stack([table[f"dissipated_{name}"].values[:, k] for name in DISSIPATED], axis=1)
+    return of_means(lost[np.isfinite(lost).all(axis=1)], lambda mean: mean[DISSIPATED.index(way)] / mean.sum())
 
 
 def overtakes(table, first, second, low=0.02):
@@ -207,23 +209,78 @@ def overtakes(table, first, second, low=0.02):
 
 
 def anisotropy(table):
-    """Standard deviation of P_xx, P_yy, P_zz over P, mean over seeds, (bins,)."""
+    """Standard deviation of P_xx, P_yy, P_zz, root mean square over seeds, over the mean pressure, (bins,).
+
+    NaN where the mean pressure is not above 0.
+    """
     axes = np.stack([table[f"pressure_{name}"].values for name in ("xx", "yy", "zz")])
-    return (axes.std(axis=0, ddof=1) / table["pressure"].values).mean(axis=0)
+    mean = table["pressure"].values.mean(axis=0)
+    return np.sqrt((axes.std(axis=0, ddof=1) ** 2).mean(axis=0)) / np.where(mean > 0.0, mean, np.nan)
+
+
+def along_axes(table, phi):
+    """Mean P_xx, P_yy and P_zz over the mean pressure near a filling factor, `Fit` of three numbers."""
+    place = np.abs(np.log(table["phi"].values / phi)) < np.log(NEAR)
+    axes = [table[f"pressure_{name}"].values[:, place].mean(axis=1) for name in ("xx", "yy", "zz")]
+    return of_means(np.stack(axes, axis=1), lambda mean: mean / mean.mean())
+
+
+def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
+    """P/(P_0 phi^3) of a set over that of another, of the seeds that both have.
+
+    Parameters
+    ----------
+    table, other : xarray.Dataset
+        Of the kind ``compression_set``.
+    low, high : float
+        Range of phi.
+
+    Returns
+    -------
+    Fit
+        Of (ratio, difference of the exponents): the geometric mean of the ratio over the bins, from the mean pressures
+        of the seeds, and its slope in ln phi. The error leaves out one seed of both at a time.
+    """
+    seeds = np.intersect1d(table["seed"].values, other["seed"].values)
+    both = []
+    for each in (table, other):
+        phi, pressure = _within(each, low, high)
+        ratio = pressure / each["rolling_pressure"].values[0] / phi**3
+        both.append(ratio[[list(each["seed"].values).index(seed) for seed in seeds]])
+
+    def fit(mean):
+        good = (mean > 0.0).all(axis=0)
+        y = np.log(mean[0, good] / mean[1, good])
+        return np.array([np.exp(y.mean()), np.polyfit(np.log(phi[good]), y, 1)[0]])
+
+    return of_means(np.stack(both, axis=1), fit)
+
+
+def far_slope_of_structure(table, snapshot):
+    """The same over the `FARTHEST` greatest distances within which half of the monomers of the box are at most."""
+    number = table["number_within"].values[:, snapshot]
+    there = number[np.isfinite(number).any(axis=1)]
+    if not len(there):
+        return log_slope(table["distance"].values[:0], number[:, :0])
+    inside = there.mean(axis=0) < 0.5 * table["n_monomers"].item()
+    last = np.flatnonzero(inside & np.isfinite(there).all(axis=0))[-FARTHEST:]
+    return log_slope(table["distance"].values[last], number[:, last])
 
 
 def slope_of_structure(table, snapshot, low=2.5, high=8.0):
-    """d ln N(<r)/d ln r between two distances in r_0, mean over seeds, a float."""
+    """d ln N(<r)/d ln r between two distances in r_0, `Fit` of one number."""
     distance = table["distance"].values
     inside = (distance >= low) & (distance <= high)
     return log_slope(distance[inside], table["number_within"].values[:, snapshot, inside])
 
 
 def log_slope(x, y):
-    """d ln y/d ln x of the mean of rows y over what is finite; NaN where fewer than two points are."""
+    """d ln y/d ln x of the mean of rows y over what is finite, `Fit` of one number; NaN for fewer than two points."""
     y = y[np.isfinite(y).any(axis=1)]
     there = np.isfinite(y).all(axis=0) if len(y) else np.zeros(len(x), dtype=bool)
-    return float(np.polyfit(np.log(x[there]), np.log(y[:, there].mean(axis=0)), 1)[0]) if there.sum() > 1 else np.nan
+    if there.sum() < 2:
+        return Fit(np.full(1, np.nan), np.full(1, np.nan), len(y))
+    return of_means(y[:, there], lambda mean: np.polyfit(np.log(x[there]), np.log(mean), 1)[0])
 
 
 def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):

@@ -4,18 +4,20 @@ from dataclasses import fields
 
 import numpy as np
 
+from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material
 from ratd.drives.squeezing import squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
-from ratd.engine.state import come_to_rest
+from ratd.engine.state import come_to_rest, new_state
 from ratd.engine.step import run, until
-from ratd.experiments.compression.run import TIMESTEP_FACTOR, compression_law
+from ratd.experiments.compression.run import TIMESTEP_FACTOR, Cluster, attributes, balance_check, compression_law
 from ratd.experiments.compression.static import box_rate
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
+from ratd.experiments.evolve import touching_at_start
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.geometry.box import periodic
 from ratd.laws.chosen import check_stiffness, law_of
@@ -32,6 +34,8 @@ FALLEN = 0.3
 """The pulling ends where the tension has fallen to this part of its greatest value."""
 WINDOW = 4
 """Records over which the tension is averaged where its greatest value is looked for: 2 % in L."""
+BALANCE, LONG_BALANCE = 0.005, 0.05
+"""Parts of what moved that the balance of energy may be off by, with explicit and with long steps."""
 REST_STEPS = 200
 """Steps over which the pressure of the aggregate at rest is averaged."""
 
@@ -41,6 +45,7 @@ def stretch(
     strain_rate=3e-6,
     *,
     axes="x",
+    box_length=None,
     law=None,
     timestep_factor=TIMESTEP_FACTOR,
     long_steps=None,
@@ -51,14 +56,16 @@ def stretch(
 
     Parameters
     ----------
-    compressed : xarray.Dataset
-        What `ratd.compress` returned.
+    compressed : xarray.Dataset or Grain
+        What `ratd.compress` returned; or an aggregate that fills a periodic box.
     strain_rate : float
         The box grows with dL/dt = 2 C_v L/t_0.
     axes : {"x", "xyz"}
         Axes along which it grows; the others stay.
+    box_length : float or (3,) array_like, optional
+        Edge, or edges along x, y and z, of the box [m] that a `Grain` fills, by whose copies it is held.
     law, timestep_factor, long_steps, checkpoint
-        As of `ratd.compress`; the law has to be that of the compression.
+        As of `ratd.compress`; after a compression the law has to be that of it.
     progress : callable, optional
         Called every few seconds as ``progress(phi, tension, seconds_to_go)``.
 
@@ -74,7 +81,8 @@ def stretch(
     InputError
         If an argument is not usable.
     RuntimeError
-        If the aggregate does not come to rest, or the integration fails.
+        If the aggregate does not come to rest, the integration fails, or leaves the balance of energy by more than
+        `BALANCE`, with long steps `LONG_BALANCE`.
 
     References
     ----------
@@ -82,26 +90,31 @@ def stretch(
     """
     if axes not in AXES:
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
-    if "state_monomer" not in compressed:
-        raise InputError("compressed must be what ratd.compress returned, with the state at its end.")
+    if not isinstance(compressed, Grain) and "state_monomer" not in compressed:
+        raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
+    if isinstance(compressed, Grain) != (box_length is not None):
+        raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
     if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = law_of(law, compression_law)
-    attrs = compressed.attrs
-    if repr(law) != attrs["law"]:
+    if long_steps is not None:
+        check_stiffness(law, "give long_steps=None")
+    filled = isinstance(compressed, Grain)
+    cluster = Cluster(compressed) if filled else None
+    attrs = attributes(cluster) if filled else compressed.attrs
+    if not filled and repr(law) != attrs["law"]:
         raise InputError(
             f"law is {law!r}; it must be that of the compression, {attrs['law']}, whose contacts the aggregate has."
         )
-    if long_steps is not None:
-        check_stiffness(law, "give long_steps=None")
     material = Material(attrs["material"], *(attrs[field.name] for field in fields(Material) if field.name != "name"))
     integrator, _ = integrators(material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps)
-    edges = compressed["box_length"].values[-1]
+    edges = np.array(periodic(box_length)[:3]) if filled else compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, attrs["time_unit"])
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
     marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
 
-    state = state_of(compressed)
+    state = _in_box(cluster, parts) if filled else state_of(compressed)
+    phi_start = cluster.volume / np.prod(edges) if filled else compressed["phi"].values[-1]
     key = checkpoints.fingerprint(__name__, list(state), parts)
     if checkpoints.load(checkpoint, key) is None:
         state = _at_rest(state, Parts(law, periodic(edges), integrator))
@@ -113,8 +126,9 @@ def stretch(
         pull = tension(rows[1:], axes)
         return len(pull) > 5 * WINDOW and pull[-WINDOW:].mean() < FALLEN * _smooth(pull).max()
 
+    check = balance_check({0.0: BALANCE}, {0.0: LONG_BALANCE})
     state, rows, _ = strain(
-        state, parts, marks, key=key, checkpoint=checkpoint, stop=done, tell=tell if progress else None
+        state, parts, marks, key=key, checkpoint=checkpoint, check=check, stop=done, tell=tell if progress else None
     )
     found = strain_dataset(state, rows, parts)
     pull = _smooth(tension(rows[1:], axes))
@@ -125,11 +139,20 @@ def stretch(
         {"units": "Pa", "long_name": "tension along the pulled axes"},
     )
     about = {"tensile_strength": pull[best], "phi_strength": _smooth(found["phi_mean"].values)[best]}
-    about |= {"phi_start": compressed["phi"].values[-1], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
+    about |= {"phi_start": phi_start, "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
     kept = {name: attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
     )
+
+
+def _in_box(cluster, parts):
+    """An aggregate in its box, in contact with its copies where they overlap."""
+    grain = cluster.grain
+    pairs = touching_at_start(grain.position, grain.radius, parts.box)
+    if not pairs[:, 2:].any():
+        raise InputError("compressed does not touch its copies in a box of box_length: there is nothing to pull.")
+    return new_state(grain.position, grain.radius, grain.material, pairs, *parts)
 
 
 def tension(rows, axes):

@@ -8,6 +8,8 @@ from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import ONE_COLUMN, empty, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
+VARIED = ("longer", "half_step", "slide_4", "twist_10", "roll_100")
+"""Laws of the study in which what is changed is no number of two spheres that meet head-on."""
 WIDEST = 0.35
 """Fragmentation velocities are shown where the velocities on both sides are no farther apart than this part of them."""
 RATIO = 35.0
@@ -36,6 +38,7 @@ def scaling(thresholds):
         & thresholds["sticking_velocity"].notna()
         & (thresholds["above"] - thresholds["below"] <= WIDEST * thresholds["velocity"])
         & thresholds["friction"].isin(FACES)
+        & ~thresholds["law"].isin(VARIED)
     ]
     figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, "Clusters and pairs of their spheres")
     axes = figure.subplots()

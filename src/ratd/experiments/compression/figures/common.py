@@ -17,8 +17,11 @@ WAYS = {
     "twisting": ("#D55E00", "--"),
     "sliding": ("#009E73", "-."),
     "damping": ("#8A8A8A", ":"),
+    "made": ("#E69F00", (0, (5, 1, 1, 1, 1, 1))),
 }
 """Colour and dash of each way of dissipation."""
+THIN = 0.5
+"""Width of a curve where it is not static [points]."""
 PHI_LABEL = r"filling factor $\phi$"
 RATIO_LABEL = r"$P\,/\,(P_0\phi^3)$"
 
@@ -26,6 +29,12 @@ RATIO_LABEL = r"$P\,/\,(P_0\phi^3)$"
 def read_sets(files):
     """Tables of sets, list of xarray.Dataset."""
     return [io.read(path, "compression_set") for path in files["sets"]]
+
+
+def of_same_clusters(tables):
+    """The tables with the seeds alone that all of them have."""
+    common = set.intersection(*(set(table["seed"].values.tolist()) for table in tables))
+    return [table.isel(seed_number=np.isin(table["seed"].values, list(common))) for table in tables]
 
 
 def seeds_text(table):
@@ -57,14 +66,15 @@ def two_panels(title):
     figure = new_figure(ONE_COLUMN, 1.45 * ONE_COLUMN, title)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     above.set(xscale="log", yscale="log", ylabel=r"pressure $P$ [Pa]")
-    below.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, ylim=(0.1, 30))
+    below.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL)
     below.axhline(1.0, color="black", lw=0.8)
     return figure, above, below
 
 
 def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
-    """P_0 phi^3 of a table."""
-    phi = np.geomspace(table["phi"].values[0], 0.5, 50)
+    """P_0 phi^3 of a table, as far as its pressures go and somewhat on."""
+    phi = table["phi"].values
+    phi = np.geomspace(phi[0], 1.3 * phi[np.isfinite(table["pressure"].values).any(axis=0)].max(), 50)
     values = compressive_strength_kataoka2013(phi, table["rolling_pressure"].values[0])
     axes.plot(phi, values, color=color, lw=0.8, label=label)
 
@@ -80,7 +90,7 @@ def draw_curves(above, below, tables, labels, *, alone=False):
             value = np.where(mean > 0.0, mean, np.nan) / unit
             static = phi > table["static_from"].values[0]
             axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
-            axes.plot(phi, value, color=style["color"], lw=0.5)
+            axes.plot(phi, value, color=style["color"], lw=THIN)
             low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
             axes.fill_between(phi, np.where(mean > 0.0, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
 
@@ -93,6 +103,10 @@ def finish(figure, above, below=None):
     logarithmic(above.yaxis)
     above.legend(loc="upper left")
     if below is not None:
+        # of what is static, which is not thin
+        static = [line for line in below.lines if line.get_linewidth() > THIN]
+        highest = max(np.nanmax(line.get_ydata(), initial=1.0) for line in static)
+        below.set_ylim(0.1, max(3.0, 1.3 * highest))
         logarithmic(below.yaxis)
     return figure
 

@@ -24,9 +24,10 @@ def figure4(table):
         above.plot(table["phi"], value, color=GREY, lw=0.4, label=None if k else "single clusters")
     draw_curves(above, below, [table], ["mean"])
     start = table["static_from"].values[0]
-    for axes in (above, below):
-        axes.axvline(start, color=COLOURS[1], lw=0.6, ls=":")
-    above.text(start, 0.02, " static from here", color=COLOURS[1], transform=above.get_xaxis_transform(), va="bottom")
+    # below the legend, and over the curves
+    for axes, top in ((above, 0.72), (below, 1.0)):
+        axes.axvline(start, ymax=top, color=COLOURS[1], lw=0.6, ls=":")
+    below.text(start, 0.96, " static from here", color=COLOURS[1], transform=below.get_xaxis_transform(), va="top")
     draw_line(above, table)
     return finish(figure, above, below)
 

@@ -6,7 +6,7 @@ from ratd.experiments.compression.figures.common import PHI_LABEL, WAYS, damping
 from ratd.experiments.compression.strength import rates
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
-NAMES = {"damping": "damping and long steps"}
+NAMES = {"damping": "damping and long steps", "made": "new contacts"}
 """What a curve is called where it is more than its name says."""
 
 

@@ -6,17 +6,18 @@ from ratd.experiments.compression.figures.common import (
     draw_curves,
     draw_line,
     finish,
+    of_same_clusters,
     read_sets,
     strain_text,
     two_panels,
 )
-from ratd.pictures.style import styled
+from ratd.pictures.style import GREY, styled
 
 
 @styled
 def figure9(tables):
     """Mean pressures of sets with different xi_c, each with its own P_0 phi^3 thin in the same colour."""
-    tables = sorted(tables, key=lambda table: table["critical_rolling_displacement"].item())
+    tables = sorted(of_same_clusters(tables), key=lambda table: table["critical_rolling_displacement"].item())
     title = f"{tables[0].attrs['material']}, N = {tables[0]['n_monomers'].item()}, {strain_text(tables[0])}"
     figure, above, below = two_panels(title)
     labels = [
@@ -27,6 +28,7 @@ def figure9(tables):
     draw_curves(above, below, tables, labels)
     for k, table in enumerate(tables):
         draw_line(above, table, COLOURS[k % 5], label=None)
+    above.plot([], [], color=GREY, lw=0.8, label=r"$P_0\phi^3$ of each")
     return finish(figure, above, below)
 
 

@@ -14,7 +14,7 @@ LAWS = {"lognormal": "lognormal", "mrn": r"$a^{-3.5}$"}
 @styled
 def monomers(equal, others, names):
     """P over what each length predicts, one panel a length; a right one brings all curves together."""
-    figure = new_figure(TWO_COLUMNS, 0.36 * TWO_COLUMNS, "monomers of unequal radii: pressure over predictions")
+    figure = new_figure(TWO_COLUMNS, 0.4 * TWO_COLUMNS, "monomers of unequal radii: pressure over predictions")
     every = figure.subplots(1, len(LENGTHS), sharey=True)
     for axes, (length, text) in zip(every, LENGTHS.items(), strict=True):
         for k, (table, name) in enumerate(zip((equal, *others), ("equal", *names), strict=True)):
@@ -24,11 +24,11 @@ def monomers(equal, others, names):
             low, high = (mean - error) / line, (mean + error) / line
             axes.fill_between(table["phi"], low.clip(1e-3), high.clip(1e-3), color=COLOURS[k], alpha=0.2, lw=0)
         axes.axhline(1.0, color="black", lw=0.6)
-        axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, xlim=(0.02, 0.5), ylim=(0.2, 30), title=text)
+        axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, xlim=(0.02, 0.5), ylim=(0.05, 30), title=text)
         logarithmic(axes.xaxis)
         logarithmic(axes.yaxis)
     every[0].set_ylabel("$P$ / prediction")
-    every[0].legend(loc="upper left")
+    figure.legend(*every[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from ratd.base.statistics import mean_of
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.compression.figures.common import COLOURS, power
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
@@ -42,10 +43,10 @@ def tension(entries, spun=None):
         phi = np.round(entries["phi"].values[own], 4)
         places = np.unique(phi)
         mean = np.array([strength[own][phi == place].mean() for place in places])
-        spread = np.array([strength[own][phi == place].std() for place in places])
+        error = np.array([mean_of(strength[own][phi == place])[1] for place in places])
         label = f"{'one axis' if n_axes == 1 else 'three axes'}, N = {n:g}, " + rf"$C_\mathrm{{v}} = {power(rate)}$"
         axes.errorbar(
-            places, mean, spread, marker="os^Dv"[k % 5], color=COLOURS[k % 5], ls="none", capsize=2, label=label
+            places, mean, error, marker="os^Dv"[k % 5], color=COLOURS[k % 5], ls="none", capsize=2, label=label
         )
     x = np.geomspace(0.01, 0.6, 20)
     axes.plot(
