@@ -35,14 +35,17 @@ def test_the_paper_is_as_printed():
     assert plan.stretch("x")["pull"] == {"strain_rate": 3e-7, "axes": "x"}
 
 
-def test_only_the_sets_that_a_figure_names_are_wanted():
+def test_only_the_sets_that_are_named_are_wanted():
     figures = dict.fromkeys(plans.FIGURES) | {"figure5": {"sets": ["rate_1e-5", "fiducial"]}}
-    plan = plan_of(figures=figures)
+    plan = plan_of(figures=figures, further_sets=[])
     assert plan.sets == ["rate_1e-5", "fiducial"] and plan.figures == ["figure5"]
+    further = plan_of(figures=figures, further_sets=["silicate"])
+    assert further.sets == [*plan.sets, "silicate"]
+    assert set(further.tables) - set(plan.tables) == {plans.TABLE.format(set="silicate")}
     assert plan.tables == ["<results>/compression/rate_1e-5.nc", "<results>/compression/fiducial.nc"]
     # clusters that are pulled need no compression of their own
     figures = dict.fromkeys(plans.FIGURES) | {"tension": {"pulls": ["x"]}}
-    assert all("/tension/" in path for path in plan_of(figures=figures).tables)
+    assert all("/tension/" in path for path in plan_of(figures=figures, further_sets=[]).tables)
 
 
 def test_the_steps_go_from_the_config_to_the_run():
@@ -61,6 +64,7 @@ def test_the_steps_go_from_the_config_to_the_run():
     ("change", "said"),
     [
         ({"figures": {"figure4": {"set": "x"}}}, "config: compression.figures.figure4 names the set 'x'; allowed: fid"),
+        ({"further_sets": ["x"]}, "config: compression.further_sets names the set 'x'; allowed: fid"),
         (
             {"figures": {"tension": {"pulls": ["y"]}}},
             "config: compression.figures.tension names the pull 'y'; all",
