@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.aggregates.strength import (
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
@@ -13,7 +14,6 @@ from ratd.aggregates.strength import (
     rolling_pressure,
     sound_speed_kataoka2013,
 )
-from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.base.materials import get_material
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.figures.tension import in_units
@@ -377,9 +377,7 @@ def findings(sets, entries, spun, lammps=None):
     for name, table in sets.items():
         values |= of_set(name, table)
     values |= of_pairs(sets)
-    values["worst_residual"], values["worst_set"] = max(
-        (values[f"{name}.residual_0.1"], name) for name in sets if f"{name}.residual_0.1" in values
-    )
+    values["worst_residual"] = max(value for name, value in values.items() if name.endswith(".residual_0.1"))
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["fiducial"]), unequal)
     if "explicit" in sets:

@@ -7,8 +7,8 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 from ratd.base.statistics import jackknife_error
-from ratd.observables.energy import DISSIPATED
 from ratd.experiments.compression.tables import BIN, bins, in_bins
+from ratd.observables.energy import DISSIPATED
 
 __all__ = [
     "FIT_RANGE",
@@ -19,6 +19,7 @@ __all__ = [
     "fit_with_limit",
     "mean_pressure",
     "of_means",
+    "of_same_clusters",
     "phi_at",
     "rates",
     "ratio_at",
@@ -225,15 +226,19 @@ def along_axes(table, phi):
     return of_means(np.stack(axes, axis=1), lambda mean: mean / mean.mean())
 
 
+def of_same_clusters(tables):
+    """The tables with the seeds alone that all of them have."""
+    common = set.intersection(*(set(table["seed"].values.tolist()) for table in tables))
+    return [table.isel(seed_number=np.isin(table["seed"].values, list(common))) for table in tables]
+
+
 def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     """P/(P_0 phi^3) of a set over that of another, of the seeds that both have.
 
     Parameters
     ----------
-    table, other : xarray.Dataset
-        Of the kind ``compression_set``.
-    low, high : float
-        Range of phi.
+    table, other, low, high
+        As for `fit_power_law`.
 
     Returns
     -------
@@ -241,12 +246,10 @@ def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
         Of (ratio, difference of the exponents): the geometric mean of the ratio over the bins, from the mean pressures
         of the seeds, and its slope in ln phi. The error leaves out one seed of both at a time.
     """
-    seeds = np.intersect1d(table["seed"].values, other["seed"].values)
     both = []
-    for each in (table, other):
+    for each in of_same_clusters([table, other]):
         phi, pressure = _within(each, low, high)
-        ratio = pressure / each["rolling_pressure"].values[0] / phi**3
-        both.append(ratio[[list(each["seed"].values).index(seed) for seed in seeds]])
+        both.append(pressure / each["rolling_pressure"].values[0] / phi**3)
 
     def fit(mean):
         good = (mean > 0.0).all(axis=0)

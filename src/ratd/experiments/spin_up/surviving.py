@@ -46,14 +46,13 @@ def measured_law(table, mark, material, kind, draws=0, rng=None):
     """
     part = table[(table["material"] == material) & (table["type"] == kind) & (table[mark].astype(float) > 0.0)]
     value = np.log(part[mark].astype(float))
-    by_size = value.groupby(size_key(part["a_eff"]).to_numpy())
-    mean, error = by_size.mean().sort_index(), by_size.sem().sort_index()
+    place, mean = _by_size(part, value)
     if len(mean) < 2:
         raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up")
-    place = np.log(mean.index.to_numpy() * 1e-12)
-    best = _along_lines(*_extended(place, mean.to_numpy()[None]))
-    spread = error.fillna(0.0).to_numpy() * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
-    return lambda size: best(size)[0], _along_lines(*_extended(place, mean.to_numpy() + spread))
+    error = value.groupby(size_key(part["a_eff"]).to_numpy()).sem().sort_index().fillna(0.0).to_numpy()
+    best = _along_lines(*_extended(place, mean[None]))
+    spread = error * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
+    return lambda size: best(size)[0], _along_lines(*_extended(place, mean + spread))
 
 
 def _extended(place, value):

@@ -31,12 +31,6 @@ def read_sets(files):
     return [io.read(path, "compression_set") for path in files["sets"]]
 
 
-def of_same_clusters(tables):
-    """The tables with the seeds alone that all of them have."""
-    common = set.intersection(*(set(table["seed"].values.tolist()) for table in tables))
-    return [table.isel(seed_number=np.isin(table["seed"].values, list(common))) for table in tables]
-
-
 def seeds_text(table):
     """How many clusters of what a table holds, such as ``10 clusters of 1024``."""
     n = table.sizes["seed_number"]

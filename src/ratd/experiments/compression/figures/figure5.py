@@ -1,6 +1,7 @@
 """Fig. 5 of Kataoka et al. (2013): the pressure at different strain rates."""
 
-from ratd.experiments.compression.figures.common import of_same_clusters, pressures, read_sets, strain_text
+from ratd.experiments.compression.figures.common import pressures, read_sets, strain_text
+from ratd.experiments.compression.strength import of_same_clusters
 from ratd.pictures.style import styled
 
 

@@ -1,6 +1,7 @@
 """Fig. 7 of Kataoka et al. (2013): the pressure for different normal damping."""
 
-from ratd.experiments.compression.figures.common import damping_of, of_same_clusters, pressures, read_sets, strain_text
+from ratd.experiments.compression.figures.common import damping_of, pressures, read_sets, strain_text
+from ratd.experiments.compression.strength import of_same_clusters
 from ratd.pictures.style import styled
 
 

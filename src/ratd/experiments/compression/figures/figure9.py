@@ -6,11 +6,11 @@ from ratd.experiments.compression.figures.common import (
     draw_curves,
     draw_line,
     finish,
-    of_same_clusters,
     read_sets,
     strain_text,
     two_panels,
 )
+from ratd.experiments.compression.strength import of_same_clusters
 from ratd.pictures.style import GREY, styled
 
 

@@ -11,7 +11,7 @@ from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.findings.ensemble import MARK, MARKS
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.size_law import curved_law, curved_law_value, size_law, unit_of
+from ratd.experiments.spin_up.size_law import curved_law, curved_law_value, size_law, size_law_unit, unit_of
 
 __all__ = ["of_curve", "of_law", "of_prediction"]
 
@@ -72,8 +72,9 @@ def of_curve(table, grown):
 def _farthest(table, kind, row):
     """The size whose mean is farthest from the curve, by what factor, and the same of the sizes from `LARGER` on."""
     table = table[table[MARK].astype(float) > 0.0]
-    unit = table["material"].map(lambda name: unit_of(get_material(name))).to_numpy(float)
-    off = np.log(table[MARK].astype(float) / unit / curved_law_value(table["a_eff"], *row[["C", "p", "q"]]))
+    off = np.log(
+        table[MARK].astype(float) / size_law_unit(table) / curved_law_value(table["a_eff"], *row[["C", "p", "q"]])
+    )
     means = off.groupby(np.round(table["a_eff"] / NM)).mean()
     larger = means[means.index >= LARGER / NM]
     return {
