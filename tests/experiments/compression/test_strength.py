@@ -99,3 +99,39 @@ def test_compressive_strength_of_runs():
 def test_equal_monomers_are_a_case_of_unequal_ones():
     E_roll, r_0 = 4.7e-16, 1e-7
     assert derived_pressure(E_roll, r_0, r_0**3) == pytest.approx(E_roll / r_0**3)
+
+
+def test_sets_are_compared_on_the_clusters_that_both_have():
+    """The scatter that clusters share drops out; seeds of one set alone do not count."""
+    table = table_of(lambda phi: 0.8 * P_0 * phi**3.2 * 0.1**-0.2, seeds=4, scatter=0.5)
+    other = table_of(lambda phi: P_0 * phi**3, seeds=6, scatter=0.5)
+    table["seed"], other["seed"] = ("seed_number", [0, 1, 2, 3]), ("seed_number", range(6))
+    found = strength.compared(table, other)
+    alone = strength.fit_power_law(table_of(lambda phi: 0.8 * P_0 * phi**3.2 * 0.1**-0.2)).value
+    assert found.n == 4 and found.value == pytest.approx([alone[2], 0.2])
+    assert found.error == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_pressures_along_the_axes_and_their_spread():
+    table = table_of(lambda phi: P_0 * phi**3)
+    for name, part in (("xx", 1.2), ("yy", 1.0), ("zz", 0.8)):
+        table[f"pressure_{name}"] = part * table["pressure"]
+    assert strength.anisotropy(table) == pytest.approx(np.full(table.sizes["phi_bin"], 0.2))
+    assert strength.along_axes(table, 0.1).value == pytest.approx([1.2, 1.0, 0.8])
+
+
+def test_shares_are_of_all_that_is_lost():
+    table = table_of(lambda phi: P_0 * phi**3, seeds=3)
+    for part, way in enumerate(strength.DISSIPATED):
+        table[f"dissipated_{way}"] = part * table["pressure"]
+    shares = [strength.share_at(table, way, 0.1).value[0] for way in strength.DISSIPATED]
+    assert shares == pytest.approx(np.arange(6) / 15)
+
+
+def test_the_slope_far_away_ends_at_half_of_the_monomers():
+    distance = np.geomspace(2.0, 200.0, 30)
+    number = np.minimum(0.5 * distance**3, 1000.0)
+    table = xr.Dataset({"distance": ("distance_number", distance), "n_monomers": ((), 1000)})
+    table["number_within"] = (("seed_number", "snapshot", "distance_number"), np.tile(number, (2, 1, 1)))
+    assert strength.far_slope_of_structure(table, 0).value == pytest.approx([3.0])
+    assert strength.log_slope(distance, np.tile(number, (2, 1))).value[0] < 2.5
