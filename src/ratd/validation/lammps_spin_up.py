@@ -1,4 +1,4 @@
-"""A queue of grains that ratd and LAMMPS spin up, up to 300 nm; ratd waits as in production, and does not wait.
+"""A queue of grains that ratd and LAMMPS spin up, up to 550 nm; ratd waits as in production, and does not wait.
 
     python -m ratd.validation.lammps_spin_up                # go on where it was, until all is done
     python -m ratd.validation.lammps_spin_up --minutes 30
@@ -56,7 +56,7 @@ FIRST = 0.7
 CLASSES = 32
 """Classes of radius in LAMMPS: 7 % wide each."""
 LARGE = tuple((material, kind, 200, 0) for material in ("co-S", "a-C") for kind in TYPES) + tuple(
-    ("q-S", kind, 300, 0) for kind in TYPES
+    ("q-S", kind, size, 0) for size in (300, 550) for kind in TYPES
 )
 """Material, type, size [nm] and seed of the grains that are driven in LAMMPS here, beside `CONTROLS`."""
 CONTROLS = tuple(("q-S", kind, 200, 0) for kind in TYPES)
