@@ -117,26 +117,30 @@ def rows(dataset, kind):
     bounds = {
         name: np.concatenate([[0], np.cumsum(dataset[f"row_size_{name}"].values)]).astype(int) for name in layout.ragged
     }
+    wanted = [
+        (name, variable, dataset[name].values, _texts(dataset[name]))
+        for name, variable in layout.variables.items()
+        if name not in MATERIAL and not name.startswith("row_size_")
+    ]
     result = []
     for k in range(dataset.sizes[ROW]):
-        row = xr.Dataset(attrs={name: dataset.attrs[name] for name in layout.attributes})
-        for name, variable in layout.variables.items():
-            if name in MATERIAL or name.startswith("row_size_"):
-                continue
-            array = dataset[name]
-            attributes = {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
-            if variable.dims == (ROW,):
-                value = array.values[k]
-                if name in layout.of_row:
-                    row.attrs[name] = variable.flags[value] if variable.flags else value.item()
-                else:
-                    row[name] = ((), value, attributes)
+        # all variables at once: one after the other xarray would copy the dataset each time
+        found, attributes = {}, {name: dataset.attrs[name] for name in layout.attributes}
+        for name, variable, values, texts in wanted:
+            if variable.dims != (ROW,):
+                first, last = bounds[variable.dims[0]][k : k + 2]
+                found[name] = (variable.dims, values[first:last].copy(), dict(texts))
+            elif name in layout.of_row:
+                attributes[name] = variable.flags[values[k]] if variable.flags else values[k].item()
             else:
-                dimension = variable.dims[0]
-                first, last = bounds[dimension][k : k + 2]
-                row[name] = (variable.dims, array.values[first:last].copy(), attributes)
-        result.append(row)
+                found[name] = ((), values[k], dict(texts))
+        result.append(xr.Dataset(found, attrs=attributes))
     return result
+
+
+def _texts(array):
+    """Unit and meaning of a variable."""
+    return {key: array.attrs[key] for key in ("units", "long_name") if key in array.attrs}
 
 
 def material_of(dataset):
