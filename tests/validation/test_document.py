@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pictures_alike import unlike
 from ratd.base.errors import FileError, InputError
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
@@ -38,6 +39,7 @@ def test_the_page_its_figures_and_tables_are_those_of_the_data(tmp_path):
         assert (ROOT / path).is_file(), f"redraw the page: {path}"
         if path.suffix != ".png":
             assert (tmp_path / path).read_bytes() == (ROOT / path).read_bytes(), f"redraw the page: {path}"
+    assert unlike(tmp_path / document.FIGURES, ROOT / document.FIGURES) == [], "redraw the page"
     figures = {path for path in written if path.suffix == ".png"}
     there = {path.relative_to(ROOT) for path in (ROOT / document.FIGURES).glob("*.png")}
     text = (ROOT / document.DOCUMENT).read_text(encoding="utf-8")

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pictures_alike import unlike
 from ratd.base.errors import FileError
 from ratd.validation import quasi_static_document, remnant
 from ratd.validation.quasi_static import compute, shifts
@@ -78,6 +79,7 @@ def test_the_page_and_its_figures_are_those_of_the_data(tmp_path):
     assert sorted(path.name for path in (tmp_path / quasi_static_document.FIGURES).glob("*.png")) == [
         "numbers.png", "remnant.png",
     ]  # fmt: skip
+    assert unlike(tmp_path / quasi_static_document.FIGURES, ROOT / quasi_static_document.FIGURES) == []
 
 
 def test_collect_names_the_table_that_is_missing(tmp_path):

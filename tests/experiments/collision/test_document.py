@@ -3,14 +3,19 @@
 When a claim fails after further collisions: reread the sentence in docs/templates/collision.md, mend it and the claim.
 """
 
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from pictures_alike import unlike
+from ratd.experiments.collision import document_plan as page
 from ratd.experiments.collision.document import _calibrated, claims, values, with_error
 from ratd.experiments.collision.tables import findings
+from ratd.pictures.style import save
+from ratd.pipeline import io
 from ratd.pipeline.documents import fill
 from tiny_pipeline import ROOT
 
@@ -19,8 +24,12 @@ DATA = sorted(path for path in (DOCS / "collision" / "data").glob("*/*.nc") if p
 
 
 @pytest.fixture(scope="module")
-def tables():
-    found = findings({"runs": DATA}, {"bootstrap": 2000}, lambda text: None)
+def found():
+    return findings({"runs": DATA}, {"bootstrap": 2000}, lambda text: None)
+
+
+@pytest.fixture(scope="module")
+def tables(found):
     return SimpleNamespace(**{name: found[f"collision_{name}_csv"] for name in ("table", "thresholds", "likeness")})
 
 
@@ -47,6 +56,17 @@ def test_pictures_of_the_document_are_there():
     text = (DOCS / "collision.md").read_text(encoding="utf-8")
     targets = {part.split(")")[0] for part in text.split("](")[1:]}
     assert targets and all((DOCS / target).exists() for target in targets)
+
+
+def test_the_committed_figures_are_those_of_the_data(found, tmp_path):
+    for name in ("table", "thresholds"):
+        io.write(tmp_path / f"{name}.nc", found[f"collision_{name}"], f"collision_{name}")
+    files = {name: tmp_path / f"{name}.nc" for name in ("table", "thresholds")} | {"runs": DATA}
+    drawn = [name for name, (_, source, _) in page.FIGURES.items() if source in files]
+    for name in drawn:
+        module = import_module(f"ratd.experiments.collision.figures.{page.figure_module(name)}")
+        save(module.draw(files, page.figure_settings(name)), tmp_path / "drawn" / f"{name}.png")
+    assert len(drawn) >= 8 and unlike(tmp_path / "drawn", DOCS / "collision") == [], "redraw the document"
 
 
 def test_digits():

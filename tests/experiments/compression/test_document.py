@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import ratd
+from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
 from ratd.experiments.compression.findings import findings
@@ -20,6 +21,11 @@ def values():
 
 def test_the_committed_document_is_what_its_data_give(values):
     assert fill(TEMPLATE, values) == document.DOCUMENT.read_text(encoding="utf-8")
+
+
+def test_the_committed_figures_are_those_of_the_data(tmp_path):
+    document.redraw(into=tmp_path)
+    assert unlike(tmp_path / document.FIGURES, document.FIGURES) == [], "redraw the document"
 
 
 def test_every_figure_of_the_document_is_there():

@@ -6,12 +6,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from pictures_alike import ALIKE, difference, unlike
 from ratd.base.errors import FileError
 from ratd.base.measured import Measured
 from ratd.experiments.spin_up import document
+from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.findings.beside import composition_tables, of_pairs, recomputed
 from ratd.experiments.spin_up.findings.claims import all_of, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
+from ratd.pictures.style import save
 
 ROOT = Path(__file__).parents[3]
 TYPES = ("BA", "BAM1", "BAM2")
@@ -23,11 +26,22 @@ def test_the_documents_and_figures_are_those_of_the_data(tmp_path):
         assert (tmp_path / page).read_bytes() == (ROOT / page).read_bytes(), "redraw the document"
     drawn = sorted(path.name for path in (tmp_path / document.FIGURES).glob("*.png"))
     assert drawn == sorted(path.name for path in (ROOT / document.FIGURES).glob("*.png"))
+    assert unlike(tmp_path / document.FIGURES, ROOT / document.FIGURES) == [], "redraw the document"
     text = (ROOT / "docs/reproduction.md").read_text(encoding="utf-8")
     appendix = (ROOT / "docs/reproduction_appendix.md").read_text(encoding="utf-8")
     assert [name for name in drawn if f"(reproduction/{name})" not in text + appendix] == []
     # the referee's measure
     assert text.count("\n") <= 250
+
+
+def test_a_figure_whose_points_moved_is_noticed(tmp_path):
+    table = document.read_data(ROOT / document.DATA).driven
+    for name, factor in (("same", 1.0), ("moved", 1.1)):
+        save(law(table.assign(omega_mass_75=factor * table["omega_mass_75"])), tmp_path / f"{name}.png")
+    committed = ROOT / document.FIGURES / "law.png"
+    assert difference(tmp_path / "same.png", committed) < 0.1 * ALIKE
+    assert difference(tmp_path / "moved.png", committed) > ALIKE
+    assert difference(committed, tmp_path / "none.png") == 1.0
 
 
 def test_collect_names_what_is_missing(tmp_path):
