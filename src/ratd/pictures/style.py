@@ -301,7 +301,7 @@ def bar_lengths(middle, low, high):
     return np.maximum([middle - low, high - middle], 0.0)
 
 
-def label_ends(axes, ends, apart=0.08, at=1.02, **look):
+def label_ends(axes, ends, apart=0.08, at=1.02, end=None, **look):
     """Write names beside lines, right of a panel, moved up or down where they would stand on each other.
 
     Parameters
@@ -314,16 +314,23 @@ def label_ends(axes, ends, apart=0.08, at=1.02, **look):
         Height of a line of text in heights of the panel.
     at : float
         Where the texts begin, in widths of the panel.
+    end : float, optional
+        Where the lines end on the other axis; thin lines then lead from there to the names.
     **look
         Of the texts.
     """
     to_panel = axes.transData + axes.transAxes.inverted()
     x = axes.get_xlim()[1]
     ends = [(text, float(to_panel.transform((x, y))[1]), colour) for text, y, colour in ends if np.isfinite(y)]
-    ends.sort(key=lambda end: end[1])
+    ends.sort(key=lambda one: one[1])
     sizes = [apart * (1 + text.count("\n")) for text, _, _ in ends]
-    for (text, _, colour), y in zip(ends, _moved_apart([end[1] for end in ends], sizes), strict=True):
+    for (text, height, colour), y in zip(ends, _moved_apart([height for _, height, _ in ends], sizes), strict=True):
         axes.text(at, y, text, transform=axes.transAxes, color=colour, ha="left", va="center", **look)
+        if end is not None:
+            start = to_panel.transform((end, axes.get_ylim()[0]))[0] + 0.01
+            line = {"arrowstyle": "-", "color": colour, "lw": 0.4, "shrinkA": 0, "shrinkB": 0}
+            places = {"xycoords": "axes fraction", "textcoords": "axes fraction", "annotation_clip": False}
+            axes.annotate("", (start, height), (at - 0.01, y), arrowprops=line, **places)
 
 
 def _moved_apart(heights, sizes):

@@ -47,7 +47,7 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     matplotlib.figure.Figure
         Open markers: relaxed grain at rest; filled ones: largest fragment at omega_disr; a line joins those of a grain.
         Above the diagonal, c/b > b/a, a grain is rather prolate, below it rather oblate, which the corners name; each
-        panel counts the oblate ones at the start and at disruption. All panels have the same axes.
+        panel counts the oblate ones at the start and at disruption. The panels of a type have the same axes.
 
     References
     ----------
@@ -59,9 +59,9 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
     width = ONE_COLUMN if len(sizes) == 1 else TWO_COLUMNS
     height = (0.09 + 0.25 * len(style)) * TWO_COLUMNS
     figure = new_figure(width, height, f"{material}, {drive_text(drive)}")
-    panels = figure.subplots(len(style), len(sizes), sharex=True, sharey=True, squeeze=False)
-    greatest = np.array([1.5, 1.5])  # of b/a and c/b in all panels
+    panels = figure.subplots(len(style), len(sizes), sharex="row", sharey="row", squeeze=False)
     for row, (kind, look) in zip(panels, style.items(), strict=True):
+        greatest = np.array([1.5, 1.5])  # of b/a and c/b in the row
         for axes, size in zip(row, sizes, strict=True):
             here = table[np.isclose(table["a_eff"].astype(float), size, rtol=1e-6, atol=0) & (table["type"] == kind)]
             axes.set_title(rf"{kind}, $a_\mathrm{{eff}}$ = {size / NM:.4g} nm, {plural(len(here), 'grain')}", pad=3)
@@ -74,7 +74,9 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
             first, last = (f"{counts[f'{when}_oblate']}/{counts[f'{when}_known']}" for when in ("start", "disr"))
             text = f"oblate: {first} \N{RIGHTWARDS ARROW} {last}"
             axes.text(0.97, 0.96, text, transform=axes.transAxes, ha="right", va="top", color=look["color"])
-    _axes(panels, greatest)
+        _axes(row, greatest)
+    for axes in panels[-1]:
+        axes.set_xlabel("axis ratio $b/a$")
     handles = [Line2D([], [], label="at rest", **START), Line2D([], [], label=r"at $\omega_\mathrm{disr}$", **END)]
     figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
@@ -90,14 +92,14 @@ def _joined(axes, table, look):
     return start, end
 
 
-def _axes(panels, greatest):
-    """Limits, ticks, diagonal and words of all panels, with room for the greatest b/a and c/b."""
+def _axes(row, greatest):
+    """Limits, ticks, diagonal and words of a row of panels, with room for the greatest b/a and c/b."""
     right, top = 1.1 * greatest
     # Strips without points: above all of them stand the counts, below 1, where no ratio is, a word.
     top *= (top / 0.95) ** 0.25
     bottom = top**-0.16
     end = min(right, top)
-    for axes in panels.flat:
+    for axes in row:
         axes.plot([1, end], [1, end], color=GREY, lw=0.8, zorder=1)
         axes.set(xscale="log", yscale="log", xlim=(0.95, right), ylim=(bottom, top))
         for axis in (axes.xaxis, axes.yaxis):
@@ -106,10 +108,7 @@ def _axes(panels, greatest):
             axis.set_minor_locator(NullLocator())
         axes.text(0.03, 0.96, "prolate", transform=axes.transAxes, color=GREY, va="top")
         axes.text(0.97, 0.02, "oblate", transform=axes.transAxes, color=GREY, ha="right", va="bottom")
-    for axes in panels[-1]:
-        axes.set_xlabel("axis ratio $b/a$")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("axis ratio $c/b$")
+    row[0].set_ylabel("axis ratio $c/b$")
 
 
 def axis_ratios(table, when):

@@ -92,7 +92,7 @@ def figure8(table, material="co-S", kind="BAM2", scaled_at=100e-9, drive=None, m
         mean_and_range(axes, nanometres(cells["a_eff"]), cells, "omega_disr", look)
     logarithmic(axes.yaxis)
     axes.set_xlim(*nanometres(size_limits(cells["a_eff"])))
-    label_ends(axes, ends, apart=0.068)
+    label_ends(axes, ends, apart=0.068, at=1.06, end=nanometres(cells["a_eff"].iloc[-1]))
     return figure
 
 

@@ -146,5 +146,5 @@ def _slope(axes):
     x = np.array([low, high])
     axes.plot(x, 2.0 * (x / 0.1) ** slope, color=GREY, lw=0.9, zorder=0, scalex=False, scaley=False)
     top = axes.get_ylim()[1]
-    place = {"textcoords": "offset points", "xytext": (-4, -2), "ha": "right", "va": "top", "color": GREY}
+    place = {"textcoords": "offset points", "xytext": (6, -2), "ha": "left", "va": "top", "color": GREY}
     axes.annotate(rf"$a^{{-{EXPONENT:g}}}$", (0.1 * (0.45 * top) ** (1.0 / slope), 0.9 * top), **place)
