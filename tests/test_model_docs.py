@@ -35,7 +35,7 @@ def named(name):
 
 
 def test_there_are_pages():
-    assert set(TEXT) == {"README.md", "aggregates.md", "drives.md", "engine.md", "laws.md"}
+    assert set(TEXT) == {"README.md", "aggregates.md", "drives.md", "engine.md", "laws.md", "radiation.md"}
 
 
 @pytest.mark.parametrize(("page", "name"), found(r"`(ratd(?:\.\w+)+)`"))

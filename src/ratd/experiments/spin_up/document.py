@@ -17,6 +17,7 @@ from ratd.base.errors import FileError
 from ratd.experiments.spin_up.findings import beside, claims, ensemble
 from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
 from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
+from ratd.experiments.spin_up.findings.literature import of_literature
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
@@ -209,7 +210,7 @@ def findings(data, fits):
     values["p.acceleration"] = printed["angular_acceleration"]
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
     values |= beside.of_lammps(**data.lammps)
-    values |= of_studies(data.studies)
+    values |= of_studies(data.studies) | of_literature(data.driven, data.grown)
     values |= of_exponents(data.fragments[DRIVEN])
     values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
     if data.recomputed is not None:

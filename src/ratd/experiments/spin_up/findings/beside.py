@@ -11,7 +11,7 @@ from ratd.experiments.spin_up.cells import MATERIALS, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.findings.ensemble import MARK
-from ratd.experiments.spin_up.formulae import DAMPING, formula_effects
+from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import effect
 from ratd.experiments.spin_up.printed import PAIR_ERROR, VISCOUS_EFFECT
@@ -90,16 +90,19 @@ def of_printed_pairs(acceleration, factor):
 
 
 def of_formulae(table):
-    """What each printed formula does alone: medians over all grains of a size, least and most."""
+    """What each printed formula does alone: medians over all grains of a size, least and most, and of each type."""
     every = formula_effects(table, MARK)
     every = every[every["type"] == "all"]
     contacts = every[every["formula"] != DAMPING]
     ratios = table.loc[table["formula"] == DAMPING, f"{MARK}_ratio"]
-    return {
+    values = {
         "formulae.contacts least": float(contacts["median"].min()),
         "formulae.contacts most": float(contacts["median"].max()),
         "formulae.damping": median(ratios),
     }
+    for (formula, kind), part in table[table["formula"] != OWN].groupby(["formula", "type"]):
+        values[f"formulae.{formula} {kind}"] = median(part[f"{MARK}_ratio"])
+    return values
 
 
 def recomputed(older, newer):
