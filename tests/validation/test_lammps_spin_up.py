@@ -1,5 +1,7 @@
 """Grains spun up by both codes: classes of radius, what is driven, and what is told of the thresholds."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,7 +17,7 @@ from ratd.pipeline import io
 from ratd.pipeline.queue import Task, key, work
 from ratd.validation import lammps_spin_up as large
 from ratd.validation import peer_lammps
-from ratd.validation.lammps import ELASTIC_ROLLING, TURNING, threshold
+from ratd.validation.lammps import ELASTIC_ROLLING, PARTS, TURNING, InLammps, driven, threshold
 from ratd.validation.plan import Checks
 from tiny_pipeline import ROOT
 
@@ -70,6 +72,34 @@ def test_both_codes_drive_a_grain_from_the_first_omega_on():
     )
     np.testing.assert_allclose(high / low, large.STEP)
     assert 0.7 < high[1] / high[0] < 1.4
+
+
+@needs_lammps
+@pytest.mark.parametrize("holds", [4, 13])
+def test_a_killed_run_goes_on_after_its_last_hold(tmp_path, holds):
+    """Killed during the rise, and behind it: the same bits as without."""
+    grain = ratd.grow("BAM1", 60e-9, "q-S", 0)
+    state, unit = relax(grain), 0.9 * cut_bound(grain)
+    make = partial(InLammps, state, grain.material, turning=True, classes=4)
+    whole = driven(make, unit, 1.03, 0.02, 0.7, tmp_path / "whole")
+    assert not any(tmp_path.iterdir()) and len(whole) > 4
+
+    class Killed(InLammps):
+        """Dies in the unwinding after some holds."""
+
+        left = holds * PARTS
+
+        def unwind(self):
+            Killed.left -= 1
+            if Killed.left < 0:
+                raise KeyboardInterrupt
+            super().unwind()
+
+    with pytest.raises(KeyboardInterrupt):
+        driven(partial(Killed, *make.args, **make.keywords), unit, 1.03, 0.02, 0.7, tmp_path / "run")
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"run.{holds}.restart", "run.npz"]
+    assert driven(make, unit, 1.03, 0.02, 0.7, tmp_path / "run") == whole
+    assert not any(tmp_path.iterdir())
 
 
 def test_a_grain_that_breaks_at_the_first_omega_is_driven_from_a_lower_one():

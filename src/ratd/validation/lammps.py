@@ -11,6 +11,7 @@ them comes from that limit (see `ratd.validation.peer_lammps.DIFFERENCES`).
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -38,6 +39,7 @@ from ratd.laws.johnson_kendall_roberts import (
     normal_force,
 )
 from ratd.observables.pieces import heaviest_pieces
+from ratd.pipeline.atomic import atomic
 from ratd.validation import peer_lammps
 from ratd.validation.energy_step import NO_ROLLING_LIMIT
 from ratd.validation.peer_lammps import Spheres, stable_step
@@ -76,6 +78,7 @@ MARKS = {"first loss": 1.0 - 1e-9, "25 % of the mass": 0.75}
 PARTS = 8
 """A grain is looked at so many times in a run, which ends where it has lost 25 % of its mass."""
 FIRST_OMEGA = 0.4
+RISE = 10
 """Driven grains are looked at from this part of the cut bound on."""
 GREATEST_RATIO = 2.0
 """No omega above this part of the cut bound is tried."""
@@ -149,14 +152,16 @@ class InLammps:
         Whether it is described in a frame that turns, where `turn` acts on the frame.
     classes : int, optional
         See `ratd.validation.peer_lammps.sort_by_radius`.
+    saved : path-like, optional
+        File of `save`, in a frame that turns: go on from there.
     """
 
-    def __init__(self, state, material, turning=False, classes=None):
+    def __init__(self, state, material, turning=False, classes=None, saved=None):
         rows = monomer_rows(state)
         radius, self._mass = rows[:, RADIUS].copy(), rows[:, MASS].copy()
         self._turning, self._omega = turning, 0.0
         self.timestep = stable_step(radius, material, contact_pairs(state), float(state.scalar[DT]))
-        self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep, classes=classes)
+        self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep, classes=classes, saved=saved)
 
     def __enter__(self):
         return self
@@ -171,6 +176,10 @@ class InLammps:
             self._spheres.turn_frame(self._omega)
         else:
             self._spheres.turn(omega)
+
+    def save(self, path):
+        """Write what `saved` needs to go on, all but the angular velocity of the frame."""
+        self._spheres.save(path)
 
     def advance(self, duration):
         """Integrate for `duration` [s]."""
@@ -260,24 +269,69 @@ def sudden(make, unit, step, rotations):
     return [runs[k] for k in sorted(runs)]
 
 
-def driven(make, unit, step, rotations, first=FIRST_OMEGA):
+def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
     """Rotation that grows in steps, omega -> step omega, each held for a time, until 25 % of the mass are lost.
 
-    Parameters and result as for `sudden`. From rest to `first` unit it goes in ten equal steps.
+    Parameters and result as for `sudden`. From rest to `first` unit it goes in `RISE` equal steps. With `checkpoint`, a
+    path, a run that was killed goes on after its last hold: the holds so far stand in PATH.npz, the spheres in a file
+    ``.restart`` beside it, which `make` then takes as ``saved``; both go when the run ends.
     """
-    rows = []
-    with make() as grain:
-        omega = first * unit
-        for _ in range(10):
-            grain.turn(0.1 * omega)
-            hold(grain, omega, rotations, torque=True)
+    start, rows, risen = first * unit, [], 0
+    before = _last_hold(checkpoint)
+    if before is not None:
+        rows, risen, saved = before
+    with make() if before is None else make(saved=saved) as grain:
+        for _ in range(risen):
+            grain.turn(start / RISE)
+        for omega in [start, *(row[0] for row in rows)][: len(rows)]:
+            grain.turn((step - 1.0) * omega)
+        while risen < RISE:
+            grain.turn(start / RISE)
+            hold(grain, start, rotations, torque=True)
+            risen += 1
+            _keep(checkpoint, grain, rows, risen)
+        omega = rows[-1][0] if rows else start
         while omega < GREATEST_RATIO * unit:
             grain.turn((step - 1.0) * omega)
             omega *= step
             rows.append((omega, rotations, *hold(grain, omega, rotations, torque=True)))
             if rows[-1][-1] < MARKS["25 % of the mass"]:
                 break
+            _keep(checkpoint, grain, rows, risen)
+    if checkpoint is not None:
+        for path in _files_of(checkpoint):
+            path.unlink(missing_ok=True)
     return rows
+
+
+def _files_of(checkpoint):
+    """Holds so far, and all states of the spheres, of a checkpoint."""
+    holds = Path(f"{checkpoint}.npz")
+    return [holds, *sorted(holds.parent.glob(f"{holds.stem}.*.restart"))]
+
+
+def _keep(checkpoint, grain, rows, risen):
+    """Write a checkpoint: first the spheres under a name of their own, then the holds, which name them."""
+    if checkpoint is None:
+        return
+    holds, *older = _files_of(checkpoint)
+    spheres = holds.with_name(f"{holds.stem}.{risen + len(rows)}.restart")
+    with atomic(spheres) as temporary:
+        grain.save(temporary)
+    with atomic(holds) as temporary, open(temporary, "wb") as handle:
+        np.savez(handle, rows=np.reshape(rows, (-1, 4)), risen=risen, spheres=spheres.name)
+    for path in older:
+        if path != spheres:
+            path.unlink(missing_ok=True)
+
+
+def _last_hold(checkpoint):
+    """Rows, steps of the rise and file of the spheres of a checkpoint; None where there is none."""
+    if checkpoint is None or not (holds := _files_of(checkpoint)[0]).is_file():
+        return None
+    with np.load(holds) as found:
+        rows, risen = [tuple(row) for row in found["rows"].tolist()], int(found["risen"])
+        return rows, risen, holds.with_name(str(found["spheres"]))
 
 
 def threshold(omega, mass, limit):

@@ -143,13 +143,20 @@ def tasks(plan, data):
         Task(
             tables[grain[:2]],
             key(grain[2] * NM, grain[3]),
-            partial(spun, *grain, own["timestep_factor"], grain in (*CONTROLS, *LARGE), source),
+            partial(
+                spun,
+                *grain,
+                own["timestep_factor"],
+                grain in (*CONTROLS, *LARGE),
+                source,
+                Path(plan.results, "lammps_spin_up", "_".join(map(str, grain))),
+            ),
         )
         for grain in wanted
     ]
 
 
-def spun(material, kind, size, seed, timestep_factor, drive, source=""):
+def spun(material, kind, size, seed, timestep_factor, drive, source="", checkpoint=None):
     """One grain as a row of a table.
 
     Parameters
@@ -164,6 +171,8 @@ def spun(material, kind, size, seed, timestep_factor, drive, source=""):
         Whether both codes drive it; else there is the spin-up of production alone.
     source : str
         Hash of the source.
+    checkpoint : path-like, optional
+        See `both`.
 
     Returns
     -------
@@ -174,7 +183,10 @@ def spun(material, kind, size, seed, timestep_factor, drive, source=""):
     grain = grow(kind, size * NM, material, seed)
     marks = disruption(spin_up(grain))
     found = {mark: marks[name].item() for mark, name in _OMEGA.items()}
-    holds = both(grain, found["first loss"], timestep_factor) if drive else {name: np.empty(0) for name in _HOLD}
+    if drive:
+        holds = both(grain, found["first loss"], timestep_factor, checkpoint=checkpoint)
+    else:
+        holds = {name: np.empty(0) for name in _HOLD}
     row = xr.Dataset(
         {name: ("hold", np.asarray(values, dtype="i1" if name == "code" else float)) for name, values in holds.items()},
         attrs={"material": material, "type": kind},
@@ -196,7 +208,7 @@ def spun(material, kind, size, seed, timestep_factor, drive, source=""):
     return row, ", ".join(said)
 
 
-def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES):
+def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoint=None):
     """What both codes do with a grain that is driven, as the variables of the kind along ``hold``.
 
     Parameters
@@ -209,6 +221,8 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES):
         First omega that is looked at, over `unit`.
     classes : int or None
         See `ratd.validation.peer_lammps.sort_by_radius`.
+    checkpoint : path-like, optional
+        Where LAMMPS, which takes hours for a large grain, keeps its last hold; see `ratd.validation.lammps.driven`.
 
     Returns
     -------
@@ -217,22 +231,25 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES):
     state = relax(grain, timestep_factor=timestep_factor)
     makers = {
         "ratd": lambda: InRatd(state, timestep_factor),
-        "LAMMPS": lambda: InLammps(state, grain.material, turning=True, classes=classes),
+        "LAMMPS": partial(InLammps, state, grain.material, turning=True, classes=classes),
     }
+    kept = {"ratd": None, "LAMMPS": checkpoint}
     parts = []
     for code, make in makers.items():
         with make() as example:
             timestep = example.timestep
-        held = _driven_from_below(make, unit, first)
+        held = _driven_from_below(make, unit, first, kept[code])
         number = np.full(len(held), CODES.index(code))
         parts.append((number, held[:, 0], held[:, 3], np.full(len(held), timestep)))
     return dict(zip(_HOLD, map(np.concatenate, zip(*parts, strict=True)), strict=True))
 
 
-def _driven_from_below(make, unit, first):
+def _driven_from_below(make, unit, first, checkpoint=None):
     """Holds of `driven`, the first of which the grain survives whole."""
     while True:
-        held = np.array(driven(make, unit, STEP, ROTATIONS, first))
+        # a checkpoint belongs to one start
+        own = None if checkpoint is None else f"{checkpoint}_{first:.3g}"
+        held = np.array(driven(make, unit, STEP, ROTATIONS, first, own))
         if held[0, 3] >= MARKS["first loss"]:
             return held
         first *= FIRST

