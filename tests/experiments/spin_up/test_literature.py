@@ -53,6 +53,15 @@ def test_a_strength_that_the_grains_follow_is_told_apart(grains):
     assert values["literature.BAM1 100 S printed"].value == pytest.approx(4.0 * strength / 1e6)
 
 
+def test_the_verdict_on_powers_of_the_filling_factor_can_be_another(grains):
+    assert of_literature(grains, grains)["literature.powers"] == "not all too slowly"
+    largest = grains["nm"] == 550
+    weak = grains.assign(omega_disr=grains["omega_disr"].where(~largest, 0.3 * grains["omega_disr"]))
+    # a scatter of the materials, so that there is an error
+    weak["omega_disr"] *= 1.0 + 0.01 * (weak["material"] == "a-C") * largest
+    assert of_literature(weak, weak)["literature.powers"] == "too slowly"
+
+
 def test_porosity_is_compared_grain_by_grain(grains):
     values = of_literature(grains, grains)
     assert values["literature.BAM1 porosity start"].value == pytest.approx(60.0)

@@ -6,6 +6,7 @@ from ratd.base.materials import get_material
 from ratd.base.measured import Measured, geometric_mean
 from ratd.base.statistics import mean_of
 from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, cell_statistics
+from ratd.experiments.spin_up.findings.claims import is_above
 from ratd.experiments.spin_up.findings.ensemble import of_class
 from ratd.experiments.spin_up.tensile import SCALINGS, eq27, predictions
 
@@ -58,6 +59,8 @@ def of_literature(table, grown):
         ``literature.TYPE SIZE S``: strength [kPa] that omega_disr of the cells of a size needs, geometric mean, and
         with ``printed`` behind it the one that Eq. 33 with Table 3 needs [MPa]. ``literature.TYPE porosity start``,
         ``disr`` and ``change``: of grains of 300 to 550 nm at rest and of what is left at omega_disr, in per cent.
+        ``literature.powers``: "too slowly" where all strengths that go with phi or a power of it give too much at the
+        largest size, by two standard errors.
     """
     values = {}
     for kind in TYPES:
@@ -75,7 +78,9 @@ def of_literature(table, grown):
         start, end = (100.0 * large[f"porosity_{when}"].to_numpy() for when in ("start", "disr"))
         for name, own in (("start", start), ("disr", end), ("change", end - start)):
             values[f"literature.{kind} porosity {name}"] = Measured(*mean_of(own, cell_of(large)))
-    return values
+    of_phi = [values[f"literature.{kind} {name}"] for kind in TYPES for name in SCALINGS if name != "T19 fractal"]
+    slow = all(is_above(ratio, 1.0) == "yes" for ratio in of_phi)
+    return values | {"literature.powers": "too slowly" if slow else "not all too slowly"}
 
 
 def _at_largest(table, grown):

@@ -216,8 +216,8 @@ def of_studies(tables):
         of ``n_monomers``, ``n_contacts``, ``filling_factor`` and ``radius k``.
 
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
-        how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` the mean radius with the least
-        of these.
+        how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
+        with the least and the most of these.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -301,4 +301,5 @@ def _equal(tables, values):
             off[k] = sum((np.log(ratio.value) * ratio.value / ratio.error) ** 2 for ratio in ratios)
             found[f"equal.{mark} chi2 {k}"] = float(off[k])
         found[f"equal.{mark} mean"] = POWERS[min(off, key=off.get)]
+        found[f"equal.{mark} worst"] = POWERS[max(off, key=off.get)]
     return found
