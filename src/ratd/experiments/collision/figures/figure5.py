@@ -14,7 +14,7 @@ from ratd.experiments.collision.figures.look import (
     velocity_axis,
 )
 from ratd.experiments.collision.fragmentation import STICKING
-from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 
@@ -44,7 +44,7 @@ def figure5(table, law):
     radii = np.sort(shown["largest_radius"].unique())
     for radius in radii:
         part = shown[shown["largest_radius"] == radius]
-        look = {"color": colour_of(radius, RADII), "marker": marker_of(radius, RADII), "lw": 0.9}
+        look = {"color": colour_of(radius), "marker": marker_of(radius), "lw": 0.9}
         for axes, quantity in ((left, "X"), (right, "N_s")):
             plot_means(axes, part, quantity, radius_label(radius), **look)
         for known, velocity in PRINTED_THRESHOLDS.items():

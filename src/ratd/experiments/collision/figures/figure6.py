@@ -16,7 +16,7 @@ from ratd.experiments.collision.figures.look import (
     velocity_axis,
 )
 from ratd.experiments.collision.fragmentation import STICKING
-from ratd.experiments.collision.printed import PRINTED_RADII, RADII
+from ratd.experiments.collision.printed import PRINTED_RADII
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
 WHOLE = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
@@ -53,7 +53,7 @@ def figure6(table, law, mrn, whole=None):
         for radius in BESIDE:
             part = equal[np.isclose(equal["largest_radius"], radius) & (equal["second_contact"] == 0.5)]
             if len(part):
-                look = {"color": colour_of(radius, RADII), "marker": marker_of(radius, RADII), "lw": 0.9}
+                look = {"color": colour_of(radius), "marker": marker_of(radius), "lw": 0.9}
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
         plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=4)

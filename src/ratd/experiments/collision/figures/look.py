@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib import colormaps
 
 from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -39,24 +40,24 @@ LAWS = {"velocity": "friction by rate", "spring": "friction by springs"}
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
 MARKERS = "osv^P*X<>"
+TRIED = (0.22e-6, 0.26e-6, *RADII)
+"""Radii [m] of equal spheres, the paper's and smaller ones, from which colours and markers are taken."""
 _SCALE = colormaps["viridis"]
 
 
-def colour_of(radius, radii):
-    """Colour of a radius among some, by its place from the least to the greatest."""
-    place, number = _place(radius, radii)
-    return _SCALE(0.9 * place / max(number - 1, 1))
+def colour_of(radius):
+    """Colour of a radius, by the place of the nearest of `TRIED`."""
+    return _SCALE(0.9 * _place(radius) / (len(TRIED) - 1))
 
 
-def marker_of(radius, radii):
-    """Marker of a radius among some."""
-    return MARKERS[_place(radius, radii)[0] % len(MARKERS)]
+def marker_of(radius):
+    """Marker of a radius, likewise."""
+    return MARKERS[_place(radius)]
 
 
-def _place(radius, radii):
-    """Place of a radius among some from the least on, and how many there are; radii differ by rounding."""
-    radii = np.sort(np.unique(radii))
-    return int(np.argmin(np.abs(radii - radius))), len(radii)
+def _place(radius):
+    """Place of the nearest of `TRIED`; radii differ by rounding."""
+    return int(np.argmin(np.abs(np.array(TRIED) - radius)))
 
 
 def radius_label(radius):

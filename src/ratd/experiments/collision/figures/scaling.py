@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ratd.experiments.collision.figures.look import colour_of, radius_label
-from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import ONE_COLUMN, empty, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
@@ -46,7 +45,7 @@ def scaling(thresholds):
         empty(axes, "no fragmentation velocities")
         return figure
     for _, row in own.iterrows():
-        colour = colour_of(row["radius"], RADII)
+        colour = colour_of(row["radius"])
         face = FACES[row["friction"]] or colour
         marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"], atol=0.0)), "D")
         size = 6.5 if abs(row["surface_energy"] - 0.025) > 1e-6 else 4.0
@@ -61,7 +60,7 @@ def scaling(thresholds):
     logarithmic(axes.yaxis)
     axes.set(xlabel="sticking velocity of two spheres [m s$^{-1}$]", ylabel="fragmentation velocity [m s$^{-1}$]")
     handles = [
-        Line2D([], [], ls="none", marker="o", color=colour_of(radius, RADII), label=radius_label(radius))
+        Line2D([], [], ls="none", marker="o", color=colour_of(radius), label=radius_label(radius))
         for radius in sorted(own["radius"].unique())
     ]
     handles += [
