@@ -42,6 +42,7 @@ def test_rows_make_a_file_of_the_check(rows, tmp_path):
 
 def test_ratios_are_means_over_seeds():
     codes = ((0, "ratd", 2, 50), (0, "LAMMPS", 1, 55), (1, "ratd", 1, 40), (1, "LAMMPS", 1, 40))
+    moving = {"ratd": 1.0, "LAMMPS": 1.1}
     cases = [
         dict(
             seed=seed,
@@ -50,14 +51,16 @@ def test_ratios_are_means_over_seeds():
             pressure=factor * phi**3,
             line=phi**3,
             n_contacts=count,
+            kinetic=moving[code],
             n_monomers=64,
             strain_rate=1e-6,
         )
         for seed, code, factor, count in codes
-        for phi in (0.015, 0.025, 0.04, 0.06, 0.1, 0.2, 0.3)
+        for phi in (0.015, 0.025, 0.04, 0.06, 0.08, 0.12, 0.14)
     ]
     found = of_lammps(pd.DataFrame(cases))
     # of the mean pressures, (1 + 1)/(2 + 1)
     assert found["lammps.pressure_0.05"].value == pytest.approx(2 / 3)
-    assert found["lammps.n_contacts_0.12"] == pytest.approx((1.05, 0.05))
+    assert found["lammps.n_contacts_0.1"] == pytest.approx((1.05, 0.05))
+    assert found["lammps.kinetic_0.03"].value == pytest.approx(1.1)
     assert found["lammps.n"] == 2 and found["lammps.N"] == 64

@@ -57,6 +57,7 @@ HOMES = {
             "literal",
             "theory",
             "compression",
+            "box_at_rest",
             "growth",
             "relaxation",
             "energy",

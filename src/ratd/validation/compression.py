@@ -4,7 +4,7 @@ LAMMPS shrinks the box by `fix deform` and carries the spheres along (`remap x`)
 relative to the box, as here. The drag -H u of the homogeneous equations is missing there; it acts over a time of
 1/(2 C_v) t_0, in which damping and friction have long taken what moves. What else differs stands in
 `ratd.validation.peer_lammps.DIFFERENCES`: the limits of sliding, rolling and twisting grow with the load, and a contact
-ends at the greatest pull.
+ends at the greatest pull. LAMMPS keeps its lists of neighbours, see `ratd.validation.lammps_box`.
 """
 
 import math
@@ -12,11 +12,11 @@ import math
 import numpy as np
 
 from ratd.aggregates.clusters import grow_bcca
-from ratd.base.materials import get_material
 from ratd.experiments.compression.run import Cluster, compress
 from ratd.experiments.compression.static import box_rate
 from ratd.laws.jkr_with_springs import jkr
-from ratd.validation.peer_lammps import load, pair_coefficients, version
+from ratd.validation.lammps_box import BoxInLammps
+from ratd.validation.peer_lammps import version
 from ratd.validation.tables import table_kind
 
 COLUMNS = {
@@ -27,42 +27,15 @@ COLUMNS = {
     "n_monomers": ("1", "monomers"),
     "strain_rate": ("1", "C_v"),
     "timestep": ("s", "time step"),
-    "phi": ("1", "filling factor"),
+    "phi": ("1", "filling factor, middle of a bin"),
     "pressure": ("Pa", "pressure, mean over a bin of phi"),
     "line": ("Pa", "P_0 phi^3"),
     "n_contacts": ("1", "contacts at the end of the bin"),
+    "kinetic": ("J", "kinetic energy of centres, relative to the box, and spins, at the end of the bin"),
 }
 KIND = table_kind("compression", "Compression beside LAMMPS", COLUMNS)
 STEP = 1.1
 """Ratio of the filling factors of two rows."""
-SKIN = 0.2
-"""Skin of the neighbour list over the radius."""
-
-WINDOW = 200
-"""Steps of LAMMPS between two means of the pressure, which are then averaged."""
-
-_COMMANDS = """
-units si
-atom_style sphere
-atom_modify map array
-boundary p p p
-newton off
-comm_modify vel yes cutoff {cutoff}
-region world block {low} {high} {low} {high} {low} {high}
-create_box 1 world
-"""
-_SETTINGS = """
-pair_style granular
-pair_coeff 1 1 {models}
-neighbor {skin} bin
-neigh_modify every 1 delay 0 check yes
-timestep {timestep}
-compute pressure all pressure NULL virial
-compute vector all pair/local p10 p11 p12
-fix move all nve/sphere
-fix shrink all deform 1 x trate {rate} y trate {rate} z trate {rate} remap x
-thermo 2000000000
-"""
 
 
 def compute(settings, progress=None):
@@ -106,20 +79,22 @@ def _edges(first, last):
 
 
 def _binned(run, edges):
-    """Middles, mean pressures and last contacts of bins of a run."""
+    """Middles, mean pressures, last contacts and last kinetic energies of bins of a run."""
     phi, last = run["phi_mean"].values, run["phi"].values
     place = np.clip(np.searchsorted(edges, phi) - 1, 0, len(edges) - 2)
     number = np.bincount(place, minlength=len(edges) - 1)
     pressure = np.bincount(place, run["pressure"].values, minlength=len(edges) - 1) / number
     at = np.clip(np.searchsorted(last, edges[1:] * (1.0 - 1e-9)), 0, len(last) - 1)
-    return np.sqrt(edges[1:] * edges[:-1]), pressure, run["n_contacts"].values[at]
+    kinetic = (run["kinetic_translation"] + run["kinetic_spin"]).values
+    return np.sqrt(edges[1:] * edges[:-1]), pressure, run["n_contacts"].values[at], kinetic[at]
 
 
-def _case(settings, code, about, phi, pressure, n_contacts, timestep):
+def _case(settings, code, about, phi, pressure, n_contacts, kinetic, timestep):
     line = about["rolling_pressure"] * phi**3
     own = {"code": code, "version": version(), "material": settings["material"], "seed": settings["seed"]}
     own |= {"n_monomers": settings["n"], "strain_rate": settings["strain_rate"], "timestep": timestep}
-    return own | {"phi": phi, "pressure": pressure, "line": line, "n_contacts": n_contacts}
+    found = {"phi": phi, "pressure": pressure, "line": line, "n_contacts": n_contacts, "kinetic": kinetic}
+    return own | found
 
 
 def in_lammps(cluster, length, strain_rate, edges, timestep):
@@ -139,41 +114,14 @@ def in_lammps(cluster, length, strain_rate, edges, timestep):
 
     Yields
     ------
-    phi, pressure, n_contacts : float, float, int
-        Middle of a bin, mean pressure [Pa] in it, contacts at its end.
+    phi, pressure, n_contacts, kinetic : float, float, int, float
+        Middle of a bin, mean pressure [Pa] in it, contacts and kinetic energy [J] at its end.
     """
-    material = get_material(cluster.material)
-    radius = float(cluster.radius[0])
-    n = cluster.n_monomers
     rate = box_rate(strain_rate, Cluster(cluster).time_unit)
-    words = pair_coefficients(radius, radius, material)
-    models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
-    spheres = load()(cmdargs=["-log", "none", "-screen", "none"])
-    say = spheres.commands_string
-    middle = 0.5 * (cluster.position.max(axis=0) + cluster.position.min(axis=0))
-    try:
-        say(_COMMANDS.format(low=-0.5 * length, high=0.5 * length, cutoff=2.5 * radius))
-        numbers = np.arange(1, n + 1)
-        spheres.create_atoms(n, numbers.tolist(), [1] * n, np.ravel(cluster.position - middle).tolist())
-        for name, value in (("radius", radius), ("rmass", cluster.mass[0])):
-            spheres.numpy.extract_atom(name)[:n] = value
-        say(_SETTINGS.format(models=models, skin=SKIN * radius, timestep=timestep, rate=rate))
+    with BoxInLammps(cluster, length, rate, timestep, length * (edges[0] / edges[-1]) ** (1.0 / 3.0)) as box:
         done = 0
         for low, high in zip(edges[:-1], edges[1:], strict=True):
-            # the running mean of the fix is told at multiples of WINDOW only
-            steps = round(math.log(edges[0] / high) / (3.0 * rate) / timestep / WINDOW) * WINDOW
-            say(f"fix mean all ave/time 1 {WINDOW} {WINDOW} c_pressure ave running")
-            say(f"run {steps - done} post no")
-            pressure = spheres.extract_fix("mean", 0, 0)
-            say("unfix mean")
+            steps = box.whole(math.log(edges[0] / high) / (3.0 * rate))
+            pressure = box.advance(steps - done)
             done = steps
-            yield math.sqrt(low * high), pressure, _contacts(spheres)
-    finally:
-        spheres.close()
-
-
-def _contacts(spheres):
-    """Number of pairs in contact."""
-    spheres.commands_string("run 0 post no")
-    vector = np.atleast_2d(spheres.numpy.extract_compute("vector", 2, 2))
-    return int(np.any(vector != 0.0, axis=1).sum()) if vector.shape[-1] == 3 else 0
+            yield math.sqrt(low * high), pressure, box.contacts(), sum(box.kinetic())

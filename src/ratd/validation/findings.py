@@ -9,7 +9,7 @@ from scipy.stats import kstest
 
 from ratd.base.measured import median
 from ratd.base.statistics import median_of
-from ratd.experiments.compression.findings import LAMMPS_EDGES, of_lammps
+from ratd.experiments.compression.findings import LAMMPS_EDGES, of_box, of_lammps
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -23,6 +23,7 @@ __all__ = [
     "limits",
     "migrations",
     "of_balance",
+    "of_box_at_rest",
     "of_compression",
     "of_damping",
     "of_energy",
@@ -221,6 +222,13 @@ def of_compression(table):
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
     within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in LAMMPS_EDGES[:-1])
     return found | {"compression.verdict": _verdict(within)}
+
+
+def of_box_at_rest(table):
+    """Motion in a box at rest over what there can be, see `ratd.experiments.compression.findings.of_box`."""
+    found = {name.replace("box.", "box_at_rest."): value for name, value in of_box(table).items()}
+    held = max(found["box_at_rest.ratd most"], found["box_at_rest.LAMMPS most"]) < 1.0
+    return found | {"box_at_rest.verdict": _verdict(held)}
 
 
 def of_balance(table):

@@ -54,7 +54,7 @@ class Checks:
         InputError
             If the program that the check is against is missing: it is asked for before any job starts.
         """
-        if check in ("lammps", "compression"):
+        if check in ("lammps", "compression", "box_at_rest"):
             peer_lammps.load()
         return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
 
@@ -84,7 +84,8 @@ class Checks:
             "energy_step": self._free_grain,
             "frames": self._free_grain,
             "forces": self._forces,
-            "compression": self._compression,
+            "compression": self._of_cluster,
+            "box_at_rest": self._of_cluster,
             "lammps": self._lammps,
         }[check](own)
 
@@ -194,7 +195,7 @@ class Checks:
         shared["a_eff"] = own["size_nm"] * NM
         return {material: shared | {"material": material} for material in own["materials"]}
 
-    def _compression(self, own):
+    def _of_cluster(self, own):
         shared = {key: value for key, value in own.items() if key != "seeds"}
         return {f"{own['material']}_{own['n']}_{seed}": shared | {"seed": seed} for seed in range(own["seeds"])}
 

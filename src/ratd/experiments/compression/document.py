@@ -29,8 +29,8 @@ DOCUMENT = Path("docs/compression.md")
 CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/compression_default.yaml")
 SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
-PEER = Path("docs/validation/data/compression.nc")
-"""What LAMMPS found, taken there by ``python -m ratd.validation.document collect``."""
+PEER = Path("docs/validation/data")
+"""Folder of what LAMMPS found, taken there by ``python -m ratd.validation.document collect``."""
 
 
 def collect(results, data=DATA):
@@ -67,8 +67,8 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
         Pulled clusters.
     grains : dict or None
         See `ratd.experiments.compression.findings.spun_up`.
-    lammps : pandas.DataFrame or None
-        See `ratd.experiments.compression.findings.of_lammps`.
+    lammps, box : pandas.DataFrame or None
+        See `ratd.experiments.compression.findings.of_lammps`, and `of_box` there.
     """
     data = Path(data)
     sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
@@ -77,8 +77,11 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     tension = data / "tension.nc"
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
-    lammps = io.read(peer, "validation_compression").to_dataframe() if Path(peer).is_file() else None
-    return sets, entries, grains, lammps
+    beside = []
+    for name in ("compression", "box_at_rest"):
+        path = Path(peer, f"{name}.nc")
+        beside.append(io.read(path, f"validation_{name}").to_dataframe() if path.is_file() else None)
+    return sets, entries, grains, *beside
 
 
 def redraw(folder=".", into=None):
@@ -93,14 +96,14 @@ def redraw(folder=".", into=None):
     """
     folder = Path(folder)
     into = folder if into is None else Path(into)
-    sets, entries, grains, lammps = read_data(folder / DATA, folder / SPUN, folder / PEER)
+    sets, entries, grains, *beside = read_data(folder / DATA, folder / SPUN, folder / PEER)
     plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
     for name in plan.figures:
         figure = draw(name, plan, sets, entries, grains, folder / DATA)
         if figure is not None:
             save(figure, into / FIGURES / f"{name}.png")
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
-    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, lammps)))
+    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, *beside)))
 
 
 def draw(name, plan, sets, entries, grains, data):

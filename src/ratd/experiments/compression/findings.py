@@ -48,7 +48,7 @@ STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping",
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
-LAMMPS_EDGES = (0.01, 0.02, 0.03, 0.05, 0.12, 0.4)
+LAMMPS_EDGES = (0.01, 0.02, 0.03, 0.05, 0.1, 0.15)
 """Filling factors between which LAMMPS is compared."""
 TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
@@ -306,25 +306,60 @@ def spun_up(grains, mark="omega_disr"):
 
 
 def of_lammps(table):
-    """Pressure and contacts in LAMMPS over those here, of the same clusters, means over bins of phi and seeds.
+    """What LAMMPS finds over what is found here, of the same clusters, means over bins of phi and seeds.
 
     Parameters
     ----------
     table : pandas.DataFrame
         Of the kind ``validation_compression``.
+
+    Returns
+    -------
+    dict
+        ``lammps.pressure_LOW``, ``lammps.kinetic_LOW`` and ``lammps.n_contacts_LOW`` for the bins between
+        `LAMMPS_EDGES`; ``lammps.n``, ``lammps.N`` and ``lammps.rate``.
     """
     found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
     found["lammps.rate"] = float(table["strain_rate"].iloc[0])
     for low, high in itertools.pairwise(LAMMPS_EDGES):
-        name = f"{low:g}"
         part = table[(table["phi"] > low) & (table["phi"] < high)]
         over = part.assign(pressure=part["pressure"] / part["line"])
-        mean = over.groupby(["seed", "code"])[["pressure", "n_contacts"]].mean().unstack("code")
-        both = mean["pressure"][["LAMMPS", "ratd"]].to_numpy()
-        found[f"lammps.pressure_{name}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
+        mean = over.groupby(["seed", "code"])[["pressure", "kinetic", "n_contacts"]].mean().unstack("code")
+        for name in ("pressure", "kinetic"):
+            both = mean[name][["LAMMPS", "ratd"]].to_numpy()
+            found[f"lammps.{name}_{low:g}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
         ratio = mean["n_contacts"]["LAMMPS"] / mean["n_contacts"]["ratd"]
-        found[f"lammps.n_contacts_{name}"] = Measured(*mean_of(ratio.to_numpy()))
+        found[f"lammps.n_contacts_{low:g}"] = Measured(*mean_of(ratio.to_numpy()))
     return found
+
+
+def of_box(table):
+    """Motion in a box that stays, over all the energy that there is when it comes to rest.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_box_at_rest``.
+
+    Returns
+    -------
+    dict
+        ``box.CODE least`` and ``most`` over the seeds: the greatest kinetic energy of each over kinetic + springs of
+        ratd. ``box.gap``: how far ratd is from closing the balance, over the same. ``box.apart``: the greatest
+        difference of the kinetic energies of ratd and of LAMMPS with kept lists, over the same. ``box.n``, ``box.N``.
+    """
+    ours = table[table["code"] == "ratd"]
+    all_there_is = (ours["kinetic"] + ours["springs"]).groupby(ours["seed"]).first()
+    found = {"box.n": table["seed"].nunique(), "box.N": int(table["n_monomers"].iloc[0])}
+    for code, part in table.groupby("code"):
+        ratio = part.groupby("seed")["kinetic"].max() / all_there_is
+        found |= {f"box.{code} least": float(ratio.min()), f"box.{code} most": float(ratio.max())}
+    found["box.gap"] = float((ours["gap"].abs().groupby(ours["seed"]).max() / all_there_is).max())
+    # by number: a record of ratd ends with the step that passes its time
+    record = table.groupby(["seed", "code"]).cumcount()
+    wide = table.assign(record=record).pivot_table(index=["seed", "record"], columns="code", values="kinetic")
+    apart = (wide["LAMMPS"] - wide["ratd"]).abs().groupby("seed").max() / all_there_is
+    return found | {"box.apart": float(apart.max())}
 
 
 def verdicts(values, sets):
@@ -358,7 +393,7 @@ def _same(values, name, beside):
     return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
 
 
-def findings(sets, entries, spun, lammps=None):
+def findings(sets, entries, spun, lammps=None, box=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -371,6 +406,8 @@ def findings(sets, entries, spun, lammps=None):
         From `spun_up`.
     lammps : pandas.DataFrame, optional
         See `of_lammps`.
+    box : pandas.DataFrame, optional
+        See `of_box`.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
@@ -400,6 +437,8 @@ def findings(sets, entries, spun, lammps=None):
         values |= of_tension(entries)
     if lammps is not None:
         values |= of_lammps(lammps)
+    if box is not None:
+        values |= of_box(box)
     if spun is not None:
         over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
         for kind in np.unique(spun["type"]):
