@@ -19,9 +19,7 @@ def unlike(drawn, committed):
     -------
     list of str
     """
-    return [
-        path.name for path in sorted(drawn.glob("*.png")) if difference(path, committed / path.name) > ALIKE
-    ]  # fmt: skip
+    return [path.name for path in sorted(drawn.glob("*.png")) if difference(path, committed / path.name) > ALIKE]
 
 
 def difference(path, other):

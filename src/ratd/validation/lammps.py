@@ -11,7 +11,6 @@ them comes from that limit (see `ratd.validation.peer_lammps.DIFFERENCES`).
 """
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -39,9 +38,9 @@ from ratd.laws.johnson_kendall_roberts import (
     normal_force,
 )
 from ratd.observables.pieces import heaviest_pieces
-from ratd.pipeline.atomic import atomic
 from ratd.validation import peer_lammps
 from ratd.validation.energy_step import NO_ROLLING_LIMIT
+from ratd.validation.lammps_checkpoint import forget, keep, last_hold
 from ratd.validation.peer_lammps import Spheres, stable_step
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -273,11 +272,11 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
     """Rotation that grows in steps, omega -> step omega, each held for a time, until 25 % of the mass are lost.
 
     Parameters and result as for `sudden`. From rest to `first` unit it goes in `RISE` equal steps. With `checkpoint`, a
-    path, a run that was killed goes on after its last hold: the holds so far stand in PATH.npz, the spheres in a file
-    ``.restart`` beside it, which `make` then takes as ``saved``; both go when the run ends.
+    path, a run that was killed goes on after its last hold (`ratd.validation.lammps_checkpoint`): `make` then takes the
+    file of the spheres as ``saved``. The checkpoint goes when the run ends.
     """
     start, rows, risen = first * unit, [], 0
-    before = _last_hold(checkpoint)
+    before = last_hold(checkpoint)
     if before is not None:
         rows, risen, saved = before
     with make() if before is None else make(saved=saved) as grain:
@@ -289,7 +288,7 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
             grain.turn(start / RISE)
             hold(grain, start, rotations, torque=True)
             risen += 1
-            _keep(checkpoint, grain, rows, risen)
+            keep(checkpoint, grain, rows, risen)
         omega = rows[-1][0] if rows else start
         while omega < GREATEST_RATIO * unit:
             grain.turn((step - 1.0) * omega)
@@ -297,41 +296,9 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
             rows.append((omega, rotations, *hold(grain, omega, rotations, torque=True)))
             if rows[-1][-1] < MARKS["25 % of the mass"]:
                 break
-            _keep(checkpoint, grain, rows, risen)
-    if checkpoint is not None:
-        for path in _files_of(checkpoint):
-            path.unlink(missing_ok=True)
+            keep(checkpoint, grain, rows, risen)
+    forget(checkpoint)
     return rows
-
-
-def _files_of(checkpoint):
-    """Holds so far, and all states of the spheres, of a checkpoint."""
-    holds = Path(f"{checkpoint}.npz")
-    return [holds, *sorted(holds.parent.glob(f"{holds.stem}.*.restart"))]
-
-
-def _keep(checkpoint, grain, rows, risen):
-    """Write a checkpoint: first the spheres under a name of their own, then the holds, which name them."""
-    if checkpoint is None:
-        return
-    holds, *older = _files_of(checkpoint)
-    spheres = holds.with_name(f"{holds.stem}.{risen + len(rows)}.restart")
-    with atomic(spheres) as temporary:
-        grain.save(temporary)
-    with atomic(holds) as temporary, open(temporary, "wb") as handle:
-        np.savez(handle, rows=np.reshape(rows, (-1, 4)), risen=risen, spheres=spheres.name)
-    for path in older:
-        if path != spheres:
-            path.unlink(missing_ok=True)
-
-
-def _last_hold(checkpoint):
-    """Rows, steps of the rise and file of the spheres of a checkpoint; None where there is none."""
-    if checkpoint is None or not (holds := _files_of(checkpoint)[0]).is_file():
-        return None
-    with np.load(holds) as found:
-        rows, risen = [tuple(row) for row in found["rows"].tolist()], int(found["risen"])
-        return rows, risen, holds.with_name(str(found["spheres"]))
 
 
 def threshold(omega, mass, limit):
