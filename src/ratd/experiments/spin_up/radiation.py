@@ -219,7 +219,7 @@ def omega_rat(size, strength, around=DIFFUSE, inertia_ratio=1.0, coefficient=INF
     all where it is great. That a wider grain also catches more light is left out, so that its omega is a lower limit.
 
     The printed 9.6e8 and 1.78e10 rad/s (gamma_rad = U = 1, a = 0.1 um, lambda = 0.5 um, n_H = 10 cm-3, 100 K, below and
-    above lambda/1.8) are 1.04 and 1.26 times this.
+    above lambda/1.8) are without the infrared light, and then 1.04 and 1.26 times this.
     """
     drag = gas_drag(size, around, inertia_ratio)
     damping = infrared_damping(size, strength, around, inertia_ratio, coefficient)
