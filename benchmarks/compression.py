@@ -12,7 +12,8 @@ import time
 from benchmarks import tables
 from ratd import compress, grow_bcca
 from ratd.experiments.compression.run import Cluster
-from ratd.validation.compression import WINDOW, in_lammps
+from ratd.experiments.compression.static import box_rate
+from ratd.validation.lammps_box import WINDOW, BoxInLammps
 
 FACTOR, LAMMPS_STEP = 0.14, 0.1
 """f of the explicit step of ratd, which is 0.2 t_0; step of LAMMPS over t_0, where the damping is explicit."""
@@ -73,16 +74,16 @@ def _explicit(cluster, steps, first):
 def _lammps(cluster, steps, first, unit):
     """The same of LAMMPS."""
     dt = LAMMPS_STEP * unit
-    # the first part sets everything up
-    edges = [first * math.exp(6.0 * STRAIN_RATE * LAMMPS_STEP * done) for done in (0, WINDOW, WINDOW + steps)]
     length = (Cluster(cluster).volume / first) ** (1.0 / 3.0)
-    parts = in_lammps(cluster, length, STRAIN_RATE, edges, dt)
-    next(parts)
-    begun = time.perf_counter()
-    _, _, contacts = next(parts)
-    seconds = time.perf_counter() - begun
-    parts.close()
-    return seconds, round(steps / WINDOW) * WINDOW, contacts, dt
+    # its own way of keeping lists of neighbours, which is the faster one
+    with BoxInLammps(cluster, length, box_rate(STRAIN_RATE, unit), dt, None) as box:
+        # the first part sets everything up
+        box.advance(WINDOW)
+        steps = round(steps / WINDOW) * WINDOW
+        begun = time.perf_counter()
+        box.advance(steps)
+        seconds = time.perf_counter() - begun
+        return seconds, steps, box.contacts(), dt
 
 
 def _long(cluster):
