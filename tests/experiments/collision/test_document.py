@@ -12,7 +12,8 @@ import pytest
 
 from pictures_alike import unlike
 from ratd.experiments.collision import document_plan as page
-from ratd.experiments.collision.document import _calibrated, claims, values, with_error
+from ratd.experiments.collision.claims import claims
+from ratd.experiments.collision.document import _calibrated, values, with_error
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
 from ratd.pipeline import io

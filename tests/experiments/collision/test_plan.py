@@ -127,3 +127,20 @@ def test_a_wrong_config_is_refused_in_one_sentence(change, words):
     with pytest.raises(InputError, match=words) as caught:
         check(copy.deepcopy(config(**base | change)), SCHEMAS)
     assert "\n" not in str(caught.value) and str(caught.value).startswith("config: ")
+
+
+def test_the_default_set_is_a_part_of_the_study():
+    """Each of its collisions stands behind the document, with the same settings."""
+    default, study = (
+        check(merge(config(), yaml.safe_load((ROOT / "config" / f"collision_{name}.yaml").read_text())), SCHEMAS)
+        for name in ("default", "study")
+    )
+
+    def asked(plan):
+        for cell, rotation in plan.queue():
+            cluster = plan.cluster(plan.material_of(cell.law), cell.cluster)
+            settings = plan.settings_of(cell) | {"rotations": rotation, "snapshot_every": 1, "snapshot_rotations": []}
+            yield repr((cell.law, cell.cluster, cell.sample, sorted(cluster.items()), settings))
+
+    wanted, there = set(asked(default)), set(asked(study))
+    assert len(wanted) == 184 and wanted <= there

@@ -1,21 +1,17 @@
-"""docs/collision.md: the values of its slots and the claims of its sentences, from the files in docs/collision/data.
-
-A claim is something that a sentence of the document says and that further collisions may overturn. A test fails then,
-and somebody rereads the sentence.
-"""
+"""docs/collision.md: the values of its slots, from docs/collision/data; `.claims` has what its sentences say."""
 
 import numpy as np
 
 from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
-from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
-from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
 
-__all__ = ["claims", "document", "values"]
+__all__ = ["document", "values"]
 
 COLUMNS = (
     "X", "N_s", "X_rest", "N_s_rest", "X_early", "N_s_early", "energy_half", "energy_end", "by_damping", "by_sliding",
@@ -32,12 +28,6 @@ def with_error(mean, error, digits=None):
     if digits is None:
         digits = min(3 if error >= 0.0005 else 4, max(0, 1 - int(np.floor(np.log10(error)))))
     return f"{mean:.{digits}f} ± {error:.{digits}f}"
-
-
-def cell(table, law, cluster, velocity, impact=0.0):
-    """Collisions of one cell."""
-    same = (table["law"] == law) & (table["cluster"] == cluster) & (table["impact_parameter"] == impact)
-    return table[same & np.isclose(table["velocity"], velocity)]
 
 
 def values(table, thresholds, likeness):
@@ -78,7 +68,7 @@ def values(table, thresholds, likeness):
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
     found |= _calibrated(thresholds)
-    found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _exponents(thresholds)
+    found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
     found |= free_samples()
     found |= {
         "collisions": str(len(table)),
@@ -165,11 +155,21 @@ def _largest(table):
         found[f"samples {law} {cluster}"] = str(part["sample"].nunique())
         shares = np.sort(part.groupby("sample")["largest_share"].first().to_numpy())
         for velocity, own in part[part["impact_parameter"] == 0].groupby("velocity"):
-            means = np.sort(own.groupby("sample")["X"].mean().to_numpy())
-            found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in means)
+            by_sample = np.sort(own.groupby("sample")["X"].mean().to_numpy())
+            found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in by_sample)
         for name, parts in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
             ends = f"{parts[0]:.2f}" if len(parts) == 1 else f"{parts[0]:.2f} to {parts[-1]:.2f}"
             found[f"{name} {law} {cluster}"] = ends
+    return found
+
+
+def _late(table):
+    """``late X LAW CLUSTER``: by how much the mean X of a velocity moves at most between 2 us and the end."""
+    found = {}
+    central = table[(table["impact_parameter"] == 0) & table["X_late"].notna()]
+    for (law, cluster), part in central.groupby(["law", "cluster"]):
+        moved = np.abs(means(part, "X")[1] - means(part, "X_late")[1])
+        found[f"late X {law} {cluster}"] = f"{moved.max():.2f}"
     return found
 
 
@@ -219,96 +219,6 @@ def _alike(row):
     beyond = " (end of the range)" if row["at_end"] else ""
     radius = f"{row['radius'] / NM:.0f} ({row['radius_low'] / NM:.0f}–{row['radius_high'] / NM:.0f}){beyond}"
     return radius, f"{row['q']:.1f} ({row['q_low']:.1f}–{row['q_high']:.1f}){beyond}"
-
-
-def claims(table, thresholds, likeness):
-    """What the sentences of the document say, dict of str to bool; all must hold.
-
-    Parameters
-    ----------
-    table, thresholds, likeness : pandas.DataFrame
-        As for `values`.
-    """
-
-    def mean(column, law, cluster, velocity):
-        return mean_and_error(cell(table, law, cluster, velocity), column)[0]
-
-    def frag(law, cluster):
-        own = thresholds[(thresholds["law"] == law) & (thresholds["cluster"] == cluster)]
-        return own[own["impact_parameter"] == 0]["velocity"].iloc[0]
-
-    def first(column, law, cluster, velocity):
-        own = cell(table, law, cluster, velocity)
-        return own.loc[(own["sample"] == 1) & (own["seed"] == 0), column].iloc[0]
-
-    unequal = table[~is_equal(table)]
-    ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
-    ratios = ratios[~ratios["law"].isin(VARIED)]
-    ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
-    ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
-        subset="sticking_velocity"
-    )
-    at_half = ratios[ratios["damping_time"] == 0.5e-9]
-    at_half, ratios = (own["velocity"] / own["sticking_velocity"] for own in (at_half, ratios))
-    printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
-    return {
-        "N_s never exceeds one less the share of the largest sphere": bool(
-            (unequal["N_s"] <= 1.0 - unequal["largest_share"] + 1e-9).all()
-        ),
-        "at 30 m/s N_s of MRN is far below that of equal spheres": mean("N_s", "velocity", "mrn100", 30)
-        < mean("N_s", "velocity", "314nm", 30) - 0.1,
-        "without giants MRN holds best": mean("X", "velocity", "mrn100_to_800", 15)
-        > max(mean("X", "velocity", name, 15) for name in ("mrn100", "314nm", "314nm_giant")),
-        "one large sphere among equal ones has the same ceiling": mean("N_s", "velocity", "314nm_giant", 30) < 0.7,
-        "at 30 m/s X of MRN is near the limit": mean("X", "velocity", "mrn100", 30) < 0.25,
-        "the pair that held together had not finished": first("X_early", "velocity", "mrn", 30)
-        > 0.8
-        > 0.3
-        > first("X", "velocity", "mrn", 30),
-        "with all spheres MRN breaks less than the smallest radius": mean("X", "velocity", "mrn", 15)
-        > mean("X", "velocity", "298nm", 15) + 0.05
-        and mean("N_s", "velocity", "mrn", 20) < mean("N_s", "velocity", "298nm", 20) - 0.1,
-        "with all spheres it comes apart at 30 m/s": mean("X", "velocity", "mrn", 30) < 0.15,
-        "with all spheres its v_frag is like that of 0.298 and 0.314 um": all(
-            abs(frag("velocity", "mrn") - frag("velocity", name)) < 3.0 for name in ("298nm", "314nm")
-        ),
-        "the smallest spheres glue": mean("X", "velocity", "mrn", 15) > mean("X", "velocity", "mrn100", 15) + 0.1
-        and mean("N_s", "velocity", "mrn", 20) < mean("N_s", "velocity", "mrn100", 20) - 0.1
-        and mean("energy_half", "velocity", "mrn", 15) < 0.8 * mean("energy_half", "velocity", "mrn100", 15),
-        "by X MRN without its smallest spheres is like 0.353 um": abs(
-            frag("velocity", "mrn100") - frag("velocity", "353nm")
-        )
-        < 3.0,
-        "by N_s it is not": all(
-            mean("N_s", "velocity", "353nm", speed) > mean("N_s", "velocity", "mrn100", speed) + 0.1
-            for speed in (15, 30)
-        ),
-        "with springs it breaks less than MRN": mean("X", "spring", "353nm", 15) > mean("X", "spring", "mrn100", 15),
-        "a giant breaks what is around it": mean("N_s_rest", "velocity", "314nm_giant", 30)
-        > mean("N_s", "velocity", "314nm", 30) + 0.05,
-        "energy left rises with the radius": all(
-            np.all(np.diff([mean("energy_half", "velocity", f"{nm}nm", speed) for nm in (298, 353, 453, 570)]) > 0.0)
-            for speed in (10, 15, 20, 30)
-        ),
-        "with springs MRN comes apart at 15 m/s where 0.314 um holds": mean("X", "spring", "mrn100", 15)
-        < 0.3
-        < mean("X", "spring", "314nm", 15),
-        "springs lower the fragmentation velocity": frag("spring", "570nm") < 0.8 * frag("velocity", "570nm"),
-        "at A = 0.5 ns all are half to three fifths of the printed ones": all(
-            0.45 * velocity < frag("velocity", name) < 0.65 * velocity
-            for name, velocity in printed.items()
-            if np.isfinite(frag("velocity", name))
-        ),
-        "v_frag is about 20 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 24.5),
-        "v_frag over v_stick falls with A": bool(ratios.min() < 0.6 * at_half.min()),
-        "a greater A brings them near": all(
-            frag("velocity_1.0ns", name) < 1.2 * printed[name] and frag("velocity_1.5ns", name) > 0.8 * printed[name]
-            for name in ("570nm", "453nm")
-        ),
-        "the balance is closed": bool(
-            (table["balance"] <= np.where(table["friction"] == "spring", 0.03, 0.01) + 1e-12).all()
-        ),
-    }
 
 
 def tables_of(files):

@@ -7,7 +7,8 @@ __all__ = ["DATA", "FIGURES", "SAMPLES", "TABLES", "figure_input", "figure_modul
 DATA = "docs/collision/data"
 TABLES = "results/collision_study/{name}.nc"
 SAMPLES = "results/collision_study/samples.nc"
-_SHOWN = {"law": "velocity", "mrn": "mrn100", "twin": "314nm", "whole": "mrn"}
+_SHOWN = {"law": "velocity", "mrn": "mrn", "twin": "314nm", "cut": "mrn100"}
+"""`cut` is MRN without its smallest spheres."""
 FIGURES = {
     "figure1": ("figure1", "built", {}),
     "figure2": ("figure2", "built", {}),

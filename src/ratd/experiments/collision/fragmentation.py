@@ -6,7 +6,16 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 
-__all__ = ["STICKING", "agglomeration", "fragmentation", "fragmentation_number", "fragmentation_velocity"]
+__all__ = [
+    "STICKING",
+    "agglomeration",
+    "bootstrap_means",
+    "fragmentation",
+    "fragmentation_number",
+    "fragmentation_velocity",
+    "mean_and_error",
+    "means",
+]
 
 STICKING = 0.15
 """X above which two clusters are said to stick (Kalweit & Drikakis 2006; Umstaetter & Urbassek 2020, Sect. 3.1)."""
@@ -92,20 +101,19 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
 
     Notes
     -----
-    Mean X is interpolated linearly between the velocities. Where it falls through the limit more than once, the last
-    time counts: from there on clusters come apart.
+    Mean X, over samples of the means of each, is interpolated linearly between the velocities. Where it falls through
+    the limit more than once, the last time counts: from there on clusters come apart.
     """
     for column in ("velocity", "X"):
         if column not in table:
             raise InputError(f"The table has no column {column!r}; it must have velocity and X.")
     if not len(table):
         raise InputError("The table has no collisions; it must have at least one row.")
-    velocities = np.sort(table["velocity"].unique().astype(float))
-    groups = [table["X"].to_numpy(float)[table["velocity"].to_numpy() == v] for v in velocities]
-    middle = _crossing(velocities, np.array([group.mean() for group in groups]), limit)
+    velocities, mean, _ = means(table, "X")
+    middle = _crossing(velocities, mean, limit)
     rng = np.random.Generator(np.random.PCG64(seed))
-    means = bootstrap_means(table, "X", velocities, samples, rng)
-    drawn = np.array([_crossing(velocities, mean, limit) for mean in means.T])
+    drawn_means = bootstrap_means(table, "X", velocities, samples, rng)
+    drawn = np.array([_crossing(velocities, one, limit) for one in drawn_means.T])
     there = np.isfinite(drawn)
     spread = drawn[there] if there.sum() > 1 else np.full(2, np.nan)
     low, high = np.quantile(spread, [0.16, 0.84])
@@ -120,13 +128,31 @@ def mean_and_error(part, column):
     """Mean of a column and its standard error; the error is NaN for a single collision.
 
     Where there are several samples of a cluster the mean is that of their means, and the error is that over samples:
-    rotations of one sample are no draws of the law of the radii.
+    rotations of one sample are no draws of the law of the radii. A table without samples has one.
     """
-    own = part.loc[part[column].notna(), ["sample", column]]
-    by_sample = own.groupby("sample")[column].mean()
+    own = part[part[column].notna()]
+    by_sample = own.groupby(_samples(own))[column].mean()
     single = by_sample if len(by_sample) > 1 else own[column]
     mean = single.mean() if len(single) else np.nan
     return mean, single.std(ddof=1) / np.sqrt(len(single)) if len(single) > 1 else np.nan
+
+
+def means(table, column):
+    """Mean of a column at each velocity with its standard error, see `mean_and_error`.
+
+    Returns
+    -------
+    velocity, mean, error : (k,) arrays
+        The error is 0 where there is one collision.
+    """
+    found = [(velocity, *mean_and_error(own, column)) for velocity, own in table.groupby("velocity")]
+    velocity, mean, error = (np.array(values, dtype=float) for values in zip(*found, strict=True))
+    return velocity, mean, np.nan_to_num(error)
+
+
+def _samples(table):
+    """The sample of each collision of a table; all one where it does not say."""
+    return table["sample"].to_numpy() if "sample" in table else np.zeros(len(table))
 
 
 def bootstrap_means(table, column, velocities, count, rng):
@@ -152,10 +178,10 @@ def bootstrap_means(table, column, velocities, count, rng):
         NaN where none of the samples drawn has the velocity.
     """
     value, velocity = (table[name].to_numpy(float) for name in (column, "velocity"))
-    sample = table["sample"].to_numpy() if "sample" in table else np.zeros(len(table))
+    sample = _samples(table)
     names = np.unique(sample)
     chosen = rng.integers(len(names), size=(count, len(names)))
-    means = np.empty((len(velocities), count))
+    drawn_means = np.empty((len(velocities), count))
     for k, one in enumerate(velocities):
         drawn = np.full((len(names), count, len(names)), np.nan)
         for row, name in zip(drawn, names, strict=True):
@@ -165,8 +191,8 @@ def bootstrap_means(table, column, velocities, count, rng):
         picked = np.take_along_axis(drawn, chosen[None], axis=0)[0]
         there = np.isfinite(picked)
         with np.errstate(invalid="ignore"):
-            means[k] = np.where(there, picked, 0.0).sum(axis=1) / there.sum(axis=1)
-    return means
+            drawn_means[k] = np.where(there, picked, 0.0).sum(axis=1) / there.sum(axis=1)
+    return drawn_means
 
 
 def _crossing(velocity, mean, limit):

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.mrn import moment_of_length
-from ratd.experiments.collision.fragmentation import bootstrap_means
+from ratd.experiments.collision.fragmentation import bootstrap_means, means
 from ratd.pipeline.kinds import Kind, entries, register
 
 __all__ = ["COLUMNS", "QUANTITIES", "likeness", "likeness_table"]
@@ -74,7 +74,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
         k = int(np.argmin(misfit))
         return grid[k], misfit[k]
 
-    radius, misfit = best([table.groupby("velocity")[quantity].mean()[common].to_numpy() for table in tables])
+    radius, misfit = best([means(table[table["velocity"].isin(common)], quantity)[1] for table in tables])
     rng = np.random.Generator(np.random.PCG64(seed))
     drawn = np.stack([bootstrap_means(table, quantity, common, samples, rng) for table in tables])
     # a draw of samples that lack a velocity says nothing

@@ -16,6 +16,7 @@ from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 __all__ = [
     "EARLY",
     "HALF",
+    "LATE",
     "analyse",
     "cluster_table",
     "collision_table",
@@ -29,6 +30,8 @@ HALF = 0.5e-6
 """Time [s] at which the energy left is looked at (Fig. 8)."""
 EARLY = 0.6e-6
 """Time [s] at which X and N_s are looked at too: long after the passage of the clusters, and too early all the same."""
+LATE = 2.0e-6
+"""Time [s] at which X is looked at once more: what comes after it says whether pieces still part."""
 REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
 
 COLUMNS = {
@@ -53,6 +56,7 @@ COLUMNS = {
     "N_s": ("1", "N_s at the end"),
     "X_early": ("1", "X at 0.6 us"),
     "N_s_early": ("1", "N_s at 0.6 us"),
+    "X_late": ("1", "X at 2 us"),
     "X_rest": ("1", "X of the mass without the largest sphere of each cluster"),
     "N_s_rest": ("1", "N_s of the mass without the largest sphere of each cluster"),
     "n_pieces": ("1", "number of pieces, single spheres included"),
@@ -133,7 +137,7 @@ def collision_table(paths):
             "single_share": row["single_mass"].item() / row["mass"].item(),
             "energy_half": np.interp(HALF, time, moving) / energy if time[-1] >= HALF else np.nan,
             "energy_end": moving[-1] / energy,
-            **{name: np.interp(EARLY, time, part) if time[-1] >= EARLY else np.nan for name, part in early_values(row)},
+            **{name: np.interp(then, time, part) if time[-1] >= then else np.nan for name, then, part in _then(row)},
             "potential_share": np.max(np.abs(row["stored"].values[early]) / moving[early]),
             **{f"by_{way}": row[f"dissipated_{way}"].values[-1] / energy for way in _WAYS},
         }
@@ -141,11 +145,12 @@ def collision_table(paths):
     return pd.DataFrame(table, columns=list(COLUMNS))
 
 
-def early_values(row):
-    """X and N_s against time of one collision."""
-    first, second, whole = row["mass_1"].values, row["mass_2"].values, row["mass"].item()
-    yield "X_early", agglomeration(first, second, whole)
-    yield "N_s_early", fragmentation_number(first, second, whole)
+def _then(row):
+    """X and N_s of one collision against time, with the column that they are for, and its time [s]."""
+    masses = row["mass_1"].values, row["mass_2"].values, row["mass"].item()
+    yield "X_early", EARLY, agglomeration(*masses)
+    yield "N_s_early", EARLY, fragmentation_number(*masses)
+    yield "X_late", LATE, agglomeration(*masses)
 
 
 _WAYS = ("damping", "sliding", "rolling", "twisting")

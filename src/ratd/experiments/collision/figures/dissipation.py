@@ -8,9 +8,9 @@ from ratd.experiments.collision.figures.look import (
     is_equal,
     label_of,
     law_text,
-    means,
     velocity_axis,
 )
+from ratd.experiments.collision.fragmentation import means
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 WAYS = {

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import (
-    collisions_of,
     MRN_STYLE,
     cluster_text,
+    collisions_of,
     colour_of,
     is_equal,
     law_text,
@@ -19,13 +19,14 @@ from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_RADII
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
-WHOLE = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
-"""How the cluster with all its spheres looks."""
-BESIDE = sorted({radius for radius, _ in PRINTED_RADII.values()})
+CUT = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
+"""How the cluster without its smallest spheres looks."""
+BESIDE = (0.22e-6, 0.26e-6, *(PRINTED_RADII[quantity][0] for quantity in ("N_s", "X")))
+"""Radii [m] of the equal spheres: two smaller than those of the paper, and the two that it likens MRN to."""
 
 
 @styled
-def figure6(table, law, mrn, whole=None):
+def figure6(table, law, mrn, cut=None):
     """X and N_s of an MRN cluster, a mark a collision, and means of equal spheres of the radii that it is likened to.
 
     Parameters
@@ -34,8 +35,8 @@ def figure6(table, law, mrn, whole=None):
         `ratd.experiments.collision.tables.COLUMNS`.
     law, mrn : str
         Names of the law and of the MRN cluster in the config.
-    whole : str, optional
-        Name of the same cluster with all its spheres, where some were left out.
+    cut : str, optional
+        Name of the same cluster without its smallest spheres.
 
     Returns
     -------
@@ -43,7 +44,7 @@ def figure6(table, law, mrn, whole=None):
         The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
-    own, uncut, equal = table[table["cluster"] == mrn], table[table["cluster"] == whole], table[is_equal(table)]
+    own, without, equal = table[table["cluster"] == mrn], table[table["cluster"] == cut], table[is_equal(table)]
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(own):
@@ -56,10 +57,9 @@ def figure6(table, law, mrn, whole=None):
                 look = {"color": colour_of(radius), "marker": marker_of(radius), "lw": 0.9}
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
-        plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=4)
-        if len(uncut):
-            axes.plot(uncut["velocity"], uncut[quantity], ls="none", marker=".", color=WHOLE["color"], ms=4, zorder=3)
-            plot_means(axes, uncut, quantity, cluster_text(whole), **WHOLE, zorder=5)
+        plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=5)
+        if len(without):
+            plot_means(axes, without, quantity, cluster_text(cut), **CUT, zorder=4)
         velocity_axis(axes, own)
         axes.set_ylim(-0.03, 1.03)
     sticking_line(left, STICKING)
@@ -69,10 +69,10 @@ def figure6(table, law, mrn, whole=None):
     right.text(0.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
     left.set_ylabel("agglomeration $X$")
     right.set_ylabel("fragmentation $N_\\mathrm{s}$")
-    left.legend(loc="upper right")
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=6)
     return figure
 
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure6(collisions_of(files), settings["law"], settings["mrn"], settings.get("whole"))
+    return figure6(collisions_of(files), settings["law"], settings["mrn"], settings.get("cut"))

@@ -3,7 +3,8 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, is_equal, law_text, means
+from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, is_equal, law_text
+from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
 
 MOST = 6
@@ -27,14 +28,14 @@ def figure8(table, law, mrn):
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0) & table["energy_half"].notna()]
     equal, own = table[is_equal(table) & (table["second_contact"] == 0.5)], table[table["cluster"] == mrn]
-    figure = new_figure(ONE_COLUMN, 0.9 * ONE_COLUMN, f"Energy left at 0.5 µs, {law_text(law)}")
+    figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"Energy left at 0.5 µs, {law_text(law)}")
     axes = figure.subplots()
     if not len(equal):
         empty(axes, "no collisions")
         return figure
     # velocities that most radii have
     often = equal.groupby("velocity")["largest_radius"].nunique().sort_index()
-    velocities = often[often >= min(3, often.max())].index.to_numpy()
+    velocities = often[often > 0.5 * often.max()].index.to_numpy()
     velocities = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))]
     for k, velocity in enumerate(velocities):
         colour = colormaps["viridis"](0.9 * k / max(len(velocities) - 1, 1))
@@ -43,12 +44,12 @@ def figure8(table, law, mrn):
         axes.errorbar(
             radius * 1e6, mean, error, color=colour, marker=MARKERS[k], capsize=1.5, label=f"{velocity:g} m s$^{{-1}}$"
         )
-        same = own[own["velocity"] == velocity]["energy_half"]
+        same = own[own["velocity"] == velocity]
         if len(same):
-            axes.axhline(same.mean(), color=colour, lw=0.8, ls=(0, (4, 2)))
+            axes.axhline(mean_and_error(same, "energy_half")[0], color=colour, lw=0.8, ls=(0, (4, 2)))
     axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=f"level: {cluster_text(mrn)}")
     axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))
-    axes.legend(ncols=2)
+    figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.fragmentation import means
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY
 from ratd.pipeline import io
@@ -17,10 +17,10 @@ __all__ = [
     "colour_of",
     "label_of",
     "law_text",
-    "means",
     "plot_means",
     "radii_of",
     "radius_label",
+    "shown",
 ]
 
 CLUSTERS = {
@@ -85,6 +85,11 @@ def radii_of(files):
     return [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
 
 
+def shown(settings):
+    """Clusters of the panels of a figure: equal spheres, MRN, and if asked for MRN without its smallest spheres."""
+    return [settings[name] for name in ("twin", "mrn", "cut") if name in settings]
+
+
 def label_of(table):
     """Text for the collisions of one cluster: the radius of its spheres, else its name."""
     one = table.iloc[0]
@@ -96,19 +101,6 @@ def label_of(table):
 def is_equal(table):
     """Which collisions of a table are of equal spheres, Series of bool."""
     return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
-
-
-def means(table, quantity):
-    """Mean of a quantity at each velocity with its standard error: over samples of a cluster where there are several.
-
-    Returns
-    -------
-    velocity, mean, error : (k,) arrays
-        The error is 0 where there is one collision.
-    """
-    found = [(velocity, *mean_and_error(own, quantity)) for velocity, own in table.groupby("velocity")]
-    velocity, mean, error = (np.array(column, dtype=float) for column in zip(*found, strict=True))
-    return velocity, mean, np.nan_to_num(error)
 
 
 def plot_means(axes, table, quantity, label, **style):

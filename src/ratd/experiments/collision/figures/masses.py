@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import cluster_text
+from ratd.experiments.collision.figures.look import cluster_text, shown
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -30,7 +30,7 @@ def masses(groups):
     edges = np.geomspace(1e-4, 1.0, 81)
     for axes, (name, own) in zip(panels, groups.items(), strict=True):
         axes.set_title(cluster_text(name), pad=2)
-        axes.set(xscale="log", xlabel="mass of a piece over that of both clusters", ylim=(0, 1.02))
+        axes.set(xscale="log", ylim=(0, 1.02))
         if not own:
             empty(axes, "no collisions")
         velocities = np.array(sorted({row["velocity"].item() for row in own}))
@@ -45,6 +45,7 @@ def masses(groups):
             axes.plot(edges, np.mean(curves, axis=0), color=colour, label=f"{velocity:g} m s$^{{-1}}$")
         axes.legend(loc="lower left")
     panels[0].set_ylabel("part of the mass")
+    figure.supxlabel("mass of a piece over that of both clusters", fontsize="medium")
     return figure
 
 
@@ -61,4 +62,4 @@ def rows_by_cluster(paths, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return masses(rows_by_cluster(files["runs"], settings["law"], [settings["twin"], settings["mrn"]]))
+    return masses(rows_by_cluster(files["runs"], settings["law"], shown(settings)))

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import CLUSTERS, collisions_of, law_text, means
+from ratd.experiments.collision.figures.look import CLUSTERS, collisions_of, law_text
+from ratd.experiments.collision.fragmentation import means
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, new_figure, styled
 
 LOOKS = {"velocity": ("#0072B2", "o"), "spring": ("#D55E00", "s")}

@@ -1,0 +1,175 @@
+"""The claims of docs/collision.md: what its sentences say and further collisions may overturn.
+
+A test fails then, and somebody rereads the sentence.
+"""
+
+import numpy as np
+
+from ratd.base.units import NM
+from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
+from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+
+__all__ = ["claims"]
+
+
+def claims(table, thresholds, likeness):
+    """What the sentences of the document say, dict of str to bool; all must hold.
+
+    Parameters
+    ----------
+    table, thresholds, likeness : pandas.DataFrame
+        Of `ratd.experiments.collision.tables.findings`.
+    """
+    of = _Found(table, thresholds, likeness)
+    return {**_which_radius(of), **_what_decides(of), **_equal_spheres(of)}
+
+
+class _Found:
+    """Single numbers of the three tables."""
+
+    def __init__(self, table, thresholds, likeness):
+        self.table, self.thresholds, self.likeness = table, thresholds, likeness
+
+    def cell(self, law, cluster, velocity):
+        """Central collisions of a cell."""
+        table = self.table
+        same = (table["law"] == law) & (table["cluster"] == cluster) & (table["impact_parameter"] == 0.0)
+        return table[same & np.isclose(table["velocity"], velocity)]
+
+    def mean(self, column, law, cluster, velocity):
+        """Mean of a column in a cell."""
+        return mean_and_error(self.cell(law, cluster, velocity), column)[0]
+
+    def first(self, column, law, cluster, velocity):
+        """Value of the first rotation of the first sample."""
+        own = self.cell(law, cluster, velocity)
+        return own.loc[(own["sample"] == 1) & (own["seed"] == 0), column].iloc[0]
+
+    def frag(self, law, cluster):
+        """Fragmentation velocity [m/s]."""
+        own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
+        return own[own["impact_parameter"] == 0]["velocity"].iloc[0]
+
+    def alike(self, law, quantity):
+        """Radius [m] of the equal spheres that MRN is like."""
+        own = self.likeness[(self.likeness["law"] == law) & (self.likeness["cluster"] == "mrn")]
+        return own[own["quantity"] == quantity]["radius"].iloc[0]
+
+
+def _which_radius(of):
+    """Which equal spheres MRN is like, and which not."""
+    return {
+        "the radii that MRN is like, as rounded in the answer": all(
+            abs(of.alike(law, quantity) - radius) < 0.016e-6
+            for law, quantity, radius in (
+                ("velocity", "N_s", 0.24e-6),
+                ("velocity", "X", 0.28e-6),
+                ("spring", "N_s", 0.32e-6),
+                ("spring", "X", 0.38e-6),
+            )
+        ),
+        "both radii with rate friction are below those that the paper tried": all(
+            of.alike("velocity", quantity) < 0.298e-6 for quantity in ("N_s", "X")
+        ),
+        "the recipe's radius comes apart before MRN, and breaks more": of.frag("velocity", "353nm")
+        < of.frag("velocity", "mrn") - 3.0
+        and of.mean("N_s", "velocity", "353nm", 20) > of.mean("N_s", "velocity", "mrn", 20) + 0.4,
+        "N_s of MRN runs between 0.22 and 0.26 um until its ceiling": all(
+            of.mean("N_s", "velocity", "220nm", speed) < of.mean("N_s", "velocity", "mrn", speed)
+            and of.mean("N_s", "velocity", "mrn", speed) < of.mean("N_s", "velocity", "260nm", speed)
+            for speed in (20, 25, 30)
+        )
+        and of.mean("N_s", "velocity", "mrn", 40) < of.mean("N_s", "velocity", "220nm", 40),
+        "X of MRN runs between 0.26 and 0.314 um": all(
+            of.mean("X", "velocity", "314nm", speed) < of.mean("X", "velocity", "mrn", speed)
+            and of.mean("X", "velocity", "mrn", speed) < of.mean("X", "velocity", "260nm", speed)
+            for speed in (20, 25, 30)
+        ),
+        "energy left of MRN lies below the equal spheres in slow impacts and crosses in fast ones": of.mean(
+            "energy_half", "velocity", "mrn", 15
+        )
+        < of.mean("energy_half", "velocity", "220nm", 15)
+        and of.mean("energy_half", "velocity", "mrn", 40) > of.mean("energy_half", "velocity", "260nm", 40),
+        "of MRN sliding takes most": of.mean("by_sliding", "velocity", "mrn", 30)
+        > 0.5
+        > of.mean("by_damping", "velocity", "mrn", 30),
+        "by X MRN without its smallest spheres is like 0.353 um": abs(
+            of.frag("velocity", "mrn100") - of.frag("velocity", "353nm")
+        )
+        < 3.0,
+        "by N_s it is not": all(
+            of.mean("N_s", "velocity", "353nm", speed) > of.mean("N_s", "velocity", "mrn100", speed) + 0.1
+            for speed in (15, 30)
+        ),
+        "with springs the recipe's radius breaks less than MRN": of.mean("X", "spring", "353nm", 15)
+        > max(of.mean("X", "spring", name, 15) for name in ("mrn", "mrn100")),
+    }
+
+
+def _what_decides(of):
+    """What the largest and the smallest spheres do, and friction."""
+    unequal = of.table[~is_equal(of.table)]
+    return {
+        "N_s never exceeds one less the share of the largest sphere": bool(
+            (unequal["N_s"] <= 1.0 - unequal["largest_share"] + 1e-9).all()
+        ),
+        "at 30 m/s N_s of MRN is far below that of equal spheres": of.mean("N_s", "velocity", "mrn100", 30)
+        < of.mean("N_s", "velocity", "314nm", 30) - 0.1,
+        "without giants MRN holds best": of.mean("X", "velocity", "mrn100_to_800", 15)
+        > max(of.mean("X", "velocity", name, 15) for name in ("mrn100", "314nm", "314nm_giant")),
+        "one large sphere among equal ones has the same ceiling": of.mean("N_s", "velocity", "314nm_giant", 30) < 0.7,
+        "at 30 m/s X of MRN is near the limit": of.mean("X", "velocity", "mrn100", 30) < 0.25,
+        "the pair that held together had not finished": of.first("X_early", "velocity", "mrn", 30)
+        > 0.8
+        > 0.3
+        > of.first("X", "velocity", "mrn", 30),
+        "the smallest spheres glue": of.mean("X", "velocity", "mrn", 20) > of.mean("X", "velocity", "mrn100", 20) + 0.1
+        and of.mean("N_s", "velocity", "mrn", 20) < of.mean("N_s", "velocity", "mrn100", 20) - 0.1
+        and of.mean("energy_half", "velocity", "mrn", 15) < 0.8 * of.mean("energy_half", "velocity", "mrn100", 15),
+        "with springs they glue less": 0.0
+        < of.mean("N_s", "spring", "mrn100", 15) - of.mean("N_s", "spring", "mrn", 15)
+        < of.mean("N_s", "velocity", "mrn100", 20) - of.mean("N_s", "velocity", "mrn", 20),
+        "a giant breaks what is around it": of.mean("N_s_rest", "velocity", "314nm_giant", 30)
+        > of.mean("N_s", "velocity", "314nm", 30) + 0.05,
+        "with springs MRN comes apart at 15 m/s where 0.314 um holds": of.mean("X", "spring", "mrn", 15)
+        < 0.3
+        < of.mean("X", "spring", "314nm", 15),
+    }
+
+
+def _equal_spheres(of):
+    """Fragmentation velocities of equal spheres, and energy."""
+    thresholds, table = of.thresholds, of.table
+    ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
+    ratios = ratios[~ratios["law"].isin(VARIED)]
+    ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
+    ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
+        subset="sticking_velocity"
+    )
+    at_half = ratios[ratios["damping_time"] == 0.5e-9]
+    at_half, ratios = (own["velocity"] / own["sticking_velocity"] for own in (at_half, ratios))
+    printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
+    return {
+        "energy left rises with the radius": all(
+            np.all(np.diff([of.mean("energy_half", "velocity", f"{nm}nm", speed) for nm in (298, 353, 453, 570)]) > 0.0)
+            for speed in (10, 15, 20, 30)
+        ),
+        "springs lower the fragmentation velocity": of.frag("spring", "570nm") < 0.8 * of.frag("velocity", "570nm"),
+        "at A = 0.5 ns all are half to three fifths of the printed ones": all(
+            0.45 * velocity < of.frag("velocity", name) < 0.65 * velocity
+            for name, velocity in printed.items()
+            if np.isfinite(of.frag("velocity", name))
+        ),
+        "v_frag is about 20 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 24.5),
+        "v_frag over v_stick falls with A": bool(ratios.min() < 0.6 * at_half.min()),
+        "a greater A brings them near": all(
+            of.frag("velocity_1.0ns", name) < 1.2 * printed[name]
+            and of.frag("velocity_1.5ns", name) > 0.8 * printed[name]
+            for name in ("570nm", "453nm")
+        ),
+        "the balance is closed": bool(
+            (table["balance"] <= np.where(table["friction"] == "spring", 0.03, 0.01) + 1e-12).all()
+        ),
+    }
