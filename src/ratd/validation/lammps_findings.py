@@ -7,7 +7,7 @@ from ratd.base.measured import median
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER, new_figure, styled
 from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, GRAIN, MARKS, TURNING, threshold
 
-__all__ = ["beside", "of_lammps", "thresholds"]
+__all__ = ["beside", "of_each", "of_lammps", "thresholds"]
 
 FORCE = 1e-9
 """Difference of the normal forces over F_C."""
@@ -90,17 +90,20 @@ def of_lammps(table):
     values["lammps.fewest"], values["lammps.most"] = int(monomers.min()), int(monomers.max())
     for (way, mark), part in found.groupby(["way", "mark"]):
         name = f"lammps.{way} {'first' if mark == 'first loss' else 'quarter'}"
-        ratio = part["ratio"].dropna()
-        within = int((np.abs(ratio - 1.0) <= NEAR).sum())
-        values |= {
-            name: median(ratio),
-            f"{name} least": ratio.min(),
-            f"{name} most": ratio.max(),
-            f"{name} known": len(ratio),
-            f"{name} within": within,
-            f"{name} verdict": "met" if within == len(ratio) else "open",
-        }
+        values |= {name: median(part["ratio"].dropna())} | of_each(name, part["ratio"].dropna())
     return values
+
+
+def of_each(name, ratio):
+    """Slots on the single grains of a way and mark: ``NAME least``, ``most``, ``known``, ``within`` and ``verdict``."""
+    within = int((np.abs(ratio - 1.0) <= NEAR).sum())
+    return {
+        f"{name} least": ratio.min(),
+        f"{name} most": ratio.max(),
+        f"{name} known": len(ratio),
+        f"{name} within": within,
+        f"{name} verdict": "met" if within == len(ratio) else "open",
+    }
 
 
 @styled

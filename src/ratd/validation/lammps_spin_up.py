@@ -39,6 +39,7 @@ from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 from ratd.validation import peer_lammps
 from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driven, threshold
+from ratd.validation.lammps_findings import of_each
 from ratd.validation.plan import Checks
 
 __all__ = ["CONTROLS", "DATA", "KIND", "LARGE", "both", "findings", "main", "one_each", "spun", "tasks", "thresholds"]
@@ -350,7 +351,8 @@ def findings(table):
         over ratd driven alike; with ``waits`` behind it, of ratd driven over the spin-up of production. Errors by
         bootstrap over grains, of at least three; ``GROUP MARK grains`` is their number. Of a grain that was driven with
         both sorts of types that with own types counts, and ``classes MARK`` is the greatest difference of the other.
-        ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``.
+        ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``; ``all MARK least``
+        and so on: single grains, see `ratd.validation.lammps_findings.of_each`.
     """
     table = table.assign(size=[f"{size / NM:.0f} nm" for size in table["a_eff"]])
     one = one_each(table)
@@ -369,6 +371,7 @@ def findings(table):
             values[f"{slot} driven"] = median(own["LAMMPS"] / own["ratd"])
             values[f"{slot} waits"] = median(own["ratd"] / own["waits"])
             values[f"{slot} grains"] = int(np.isfinite(own["ratio"]).sum())
+        values |= of_each(f"lammps_spin_up.all {short}", one.loc[one["mark"] == mark, "ratio"].dropna())
         both_types = table[table["mark"] == mark].pivot_table(index=GRAIN, columns="types", values="LAMMPS")
         if {"own", "classes"} <= set(both_types):
             differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()

@@ -244,12 +244,28 @@ def test_a_material_that_the_paper_does_not_have():
 
 
 def test_limits_fill_a_document(table):
+    table = table.assign(omega_first_loss=0.9 * table["omega_mass_75"])
     values = of_radiation(table, table, draws=50)
     text = fill("{{radiation.q-S BAM1 10000 ours:.0f±}} nm, {{radiation.q-S BAM1 10000 printed porous:.0f}}", values)
     number = values["radiation.q-S BAM1 10000 ours"]
     assert text.startswith(f"{number.value:.0f} ± {number.error:.0f} nm") and 10 < number.value < 300
     assert values["radiation.a-C BAM2 1 printed"] == NONE
-    assert values["radiation.q-S BAM1 10000 ours porous"].value > number.value
+    porous = values["radiation.q-S BAM1 10000 ours porous"].value
+    assert porous > number.value
+    assert values["radiation.q-S BAM1 10000 ours range"] in (f"{number.value:.0f} to {porous:.0f}", f"{porous:.0f}")
+    assert values["radiation.a-C BAM2 1 printed range"] == NONE
+    printed = values["radiation.q-S BAM1 10000 printed"].value
+    assert values["radiation.q-S BAM1 10000 over"] == pytest.approx(number.value / printed)
+
+
+def test_what_moves_the_size_for_one_material_and_strength(table):
+    table = table.assign(omega_first_loss=0.9 * table["omega_mass_75"])
+    values = of_radiation(table, table, strengths=(1e4,), shown=("q-S", 1e4), draws=20)
+    size = {name: values[f"radiation.q-S BAM2 10000 ours{name}"].value for name in ("", " first", " DMT", " one star")}
+    # what holds to a greater omega survives at a greater size, and light from one side turns faster
+    assert size[" one star"] < size[" first"] < size[""] < size[" DMT"]
+    assert values["radiation.q-S BAM2 10000 printed first"].value == values["radiation.q-S BAM2 10000 printed"].value
+    assert "radiation.a-C BAM2 10000 ours DMT" not in values
 
 
 def test_figure_shows_ours_below_the_printed_law(table, tmp_path):

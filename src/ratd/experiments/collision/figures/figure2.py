@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from ratd.aggregates.mrn import moment_of_length, mrn_length, part_above, sample_length
+from ratd.aggregates.mrn import moment_of_length, mrn, mrn_length, part_above, sample_length
 from ratd.experiments.collision.figures.look import radii_of
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY, ONE_COLUMN, new_figure, styled
 
 HIGHEST = 8.0
+FREE = 400
+"""Free samples, of any mass, whose scatter is shown."""
 
 
 @styled
 def figure2(samples):
-    """L_q of the law, of samples, and the radii of the equal spheres on it.
+    """L_q of the law, of samples, and the radii of the equal spheres on it; a band for what free samples scatter by.
 
     Parameters
     ----------
@@ -26,11 +28,16 @@ def figure2(samples):
     figure = new_figure(ONE_COLUMN, 0.8 * ONE_COLUMN, "Length of a moment of the MRN law")
     axes = figure.subplots()
     q = np.linspace(1.0, HIGHEST, 141)
+    number = round(len(samples[0]) / part_above(samples[0].min()))
+    free = [mrn(number, seed, mass_within=None, length_within=None) for seed in range(FREE)]
+    lengths = [[sample_length(radii, one) * 1e6 for one in q] for radii in free]
+    low, high = np.quantile(lengths, [0.16, 0.84], axis=0)
+    axes.fill_between(q, low, high, color="#56B4E9", alpha=0.35, lw=0, label=f"free samples of {number}, 16 to 84 %")
     for k, radii in enumerate(samples):
         # of a sample whose smallest spheres were left out: they count in the mean, and add nothing to it
         whole = part_above(radii.min())
         own = [sample_length(radii, one) * whole ** (1.0 / one) * 1e6 for one in q]
-        axes.plot(q, own, color=GREY, lw=0.8, label="samples" if k == 0 else None)
+        axes.plot(q, own, color=GREY, lw=0.8, label="samples used" if k == 0 else None)
     axes.plot(q, [mrn_length(one) * 1e6 for one in q], color="black", label="law")
     moments = [moment_of_length(radius) for radius in RADII]
     axes.plot(moments, np.array(RADII) * 1e6, "o", color="#D55E00", label="radii of equal spheres")

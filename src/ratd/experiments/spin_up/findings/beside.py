@@ -90,14 +90,16 @@ def of_printed_pairs(acceleration, factor):
 
 
 def of_formulae(table):
-    """What each printed formula does alone: medians over all grains of a size, least and most, and of each type."""
+    """What each printed formula does alone: medians of each type, the least and the most of them, and single grains."""
     every = formula_effects(table, MARK)
-    every = every[every["type"] == "all"]
+    every = every[every["type"] != "all"]
     contacts = every[every["formula"] != DAMPING]
+    single = table.loc[~table["formula"].isin((DAMPING, OWN)), f"{MARK}_ratio"]
     ratios = table.loc[table["formula"] == DAMPING, f"{MARK}_ratio"]
     values = {
         "formulae.contacts least": float(contacts["median"].min()),
         "formulae.contacts most": float(contacts["median"].max()),
+        "formulae.single": f"{single.min():.2f} to {single.max():.2f}",
         "formulae.damping": median(ratios),
     }
     for (formula, kind), part in table[table["formula"] != OWN].groupby(["formula", "type"]):

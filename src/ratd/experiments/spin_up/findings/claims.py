@@ -96,13 +96,12 @@ def _slope(x, y, part):
 def _how(letter, table, fragments):
     """How the mass goes, and what the contacts do."""
     values = {}
-    both = table[MARK] / table["omega_disr"]
-    near = [median(both[table["type"] == kind], cell_of(table[table["type"] == kind])) for kind in TYPES]
     lost = 1.0 - table["mass_fraction_disr"]
-    for kind, ratio in zip(TYPES, near, strict=True):
-        values[f"{letter}.quarter over disr {kind}"] = ratio
+    near = {kind: _near(table[table["type"] == kind]) for kind in TYPES}
+    for kind, share in near.items():
+        values[f"{letter}.near quarter {kind}"] = Measured(100 * share.value, 100 * share.error)
         values[f"{letter}.lost at disr {kind}"] = 100.0 * median_of(lost[table["type"] == kind])["median"]
-    values[f"{letter}.holds quarter"] = all_of(is_within(ratio, 0.8, 1.25) for ratio in near)
+    values[f"{letter}.holds quarter"] = all_of(is_above(share, 0.9) for share in near.values())
     largest = fragments[fragments["half"]].groupby("grain")[["mass_fraction"]].max()
     kinds = fragments.groupby("grain")["type"].first()[largest.index]
     pieces = {kind: median(largest.loc[kinds == kind, "mass_fraction"]) for kind in TYPES}
@@ -122,6 +121,13 @@ def _how(letter, table, fragments):
     values[f"{letter}.contacts BAM2 grain"] = float((gain[table["type"] == "BAM2"] > 1.0).mean())
     values[f"{letter}.holds contacts"] = "yes" if gains["BAM2"].value > 1.0 else "no"
     return values
+
+
+def _near(table):
+    """Share of the grains in which a quarter of the mass is lost within 25 % of omega_disr, of those that lose it."""
+    both = (table[MARK] / table["omega_disr"])[table[MARK] > 0.0]
+    share = float((np.abs(np.log(both)) < math.log(1.25)).mean())
+    return Measured(share, math.sqrt(share * (1.0 - share) / len(both)))
 
 
 def _shapes(letter, table):

@@ -1,23 +1,36 @@
 """What the document tells of grains that radiation destroys."""
 
+import math
+
 import numpy as np
 
 from ratd.base.measured import Measured
 from ratd.base.units import NM
-from ratd.experiments.spin_up.radiation import infrared_coefficient
+from ratd.experiments.spin_up.radiation import DIFFUSE, infrared_coefficient
 from ratd.experiments.spin_up.surviving import COMPUTED, surviving
 
 __all__ = ["NONE", "of_radiation"]
 
 SILICATE = infrared_coefficient(0.18, 16.4)
 """F_IR of silicate, where the printed 0.4 is near that of graphite."""
+ONE_STAR = DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6)
+"""Light of a single hot star."""
+SURROUNDINGS = {
+    "one star": ONE_STAR,
+    "directed": DIFFUSE._replace(anisotropy=0.7),
+    "bluer": DIFFUSE._replace(wavelength=0.8e-6),
+    "denser": DIFFUSE._replace(hydrogen=10.0 * DIFFUSE.hydrogen),
+}
+"""Name of a variant -> what surrounds the grain."""
+DMT = math.sqrt(4.0 / 3.0)
+"""omega that a pull-off force 4/3 as great would hold, over that of JKR; driven grains come to 1.11 to 1.15."""
 FARTHEST = 2.0 * COMPUTED[1]
 """Greatest size [m] that is told: the laws are of grains half as large."""
 NONE = "none"
 """What stands in a document where no size is destroyed."""
 
 
-def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), **options):
+def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", shown=("q-S", 1e2), **options):
     """Smallest and greatest sizes that radiation destroys.
 
     Parameters
@@ -26,24 +39,58 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), **options):
         As of `ratd.experiments.spin_up.surviving.surviving`.
     strengths : sequence of float
         U of the radiation.
+    mark : str
+        Which omega is ours.
+    shown : (str, float)
+        Material and strength for which variants are told.
     **options
-        Of the same, but `porous`.
+        Of `surviving`, but `porous`.
 
     Returns
     -------
     dict
         "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
         same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
-        " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With
-        " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them.
+        " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With " greatest" behind it the
+        largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
+        drags. With "over" for "ours" ours over the
+        printed one. For `shown` also, without errors, with " first" the first loss in place of the mark, with " DMT"
+        omega `DMT` times as great, and with a name of `SURROUNDINGS`.
     """
     values = {}
     for behind, how in (("", {}), (" porous", {"porous": True}), (" cool", {"coefficient": SILICATE})):
-        for row in surviving(table, grown, strengths, **how, **options).to_dict("records"):
-            key = f"radiation.{row['material']} {row['type']} {row['strength']:g} {row['law']}{behind}"
-            for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
-                found = np.isfinite(row[size])
-                values[key + end] = Measured(row[size] / NM, error / NM) if found else NONE
-            if row["a_disr"] > FARTHEST:
-                values[key] = f"over {FARTHEST / NM:.0f}"
+        values |= _sizes(table, grown, strengths, behind, mark=mark, **how, **options)
+    for key in [key for key in values if key.endswith((" ours", " printed"))]:
+        ends = [_text(values[key + behind]) for behind in ("", " porous")]
+        values[f"{key} range"] = " to ".join(dict.fromkeys(ends))
+    material, strength = shown
+    own = table[table["material"] == material]
+    plain = {"draws": 0} | {name: value for name, value in options.items() if name != "draws"}
+    values |= _sizes(own, grown, [strength], " first", mark="omega_first_loss", **plain)
+    values |= _sizes(own.assign(**{mark: DMT * own[mark]}), grown, [strength], " DMT", mark=mark, **plain)
+    for name, around in SURROUNDINGS.items():
+        values |= _sizes(own, grown, [strength], f" {name}", mark=mark, around=around, **plain)
+    return values
+
+
+def _text(size):
+    return size if isinstance(size, str) else f"{size.value:.0f}"
+
+
+def _sizes(table, grown, strengths, behind, **how):
+    """Slots of one way to count, with its name behind them."""
+    values, ours = {}, {}
+    for row in surviving(table, grown, strengths, **how).to_dict("records"):
+        start = f"radiation.{row['material']} {row['type']} {row['strength']:g}"
+        key = f"{start} {row['law']}{behind}"
+        for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
+            found = np.isfinite(row[size])
+            values[key + end] = Measured(row[size] / NM, error / NM) if found else NONE
+        if row["a_disr"] > FARTHEST:
+            values[key] = f"over {FARTHEST / NM:.0f}"
+        if row["law"] == "ours":
+            ours[start] = row["a_disr"]
+        else:
+            ratio = ours[start] / row["a_disr"]
+            values[f"{start} over{behind}"] = ratio if np.isfinite(ratio) else NONE
     return values
