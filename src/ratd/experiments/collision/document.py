@@ -5,8 +5,10 @@ import numpy as np
 from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
+from ratd.experiments.collision.figures.look import is_equal
 from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error, means
+from ratd.experiments.collision.likeness import likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
@@ -67,6 +69,7 @@ def values(table, thresholds, likeness):
         found[f"radius {key}"], found[f"q {key}"] = _alike(row)
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
+    found |= _by_sample(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
     found |= free_samples()
@@ -160,6 +163,21 @@ def _largest(table):
         for name, parts in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
             ends = f"{parts[0]:.2f}" if len(parts) == 1 else f"{parts[0]:.2f} to {parts[-1]:.2f}"
             found[f"{name} {law} {cluster}"] = ends
+    return found
+
+
+def _by_sample(table, law, cluster):
+    """``radius by sample LAW CLUSTER N_s`` and ``X``: radii [nm] of the equal spheres that each sample is like."""
+    own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
+    one = own["cluster"] == cluster
+    found = {}
+    for quantity in ("N_s", "X"):
+        radii = []
+        for sample in sorted(own.loc[one, "sample"].unique()):
+            rows = likeness_table(own[~one | (own["sample"] == sample)], samples=2)
+            rows = rows[(rows["cluster"] == cluster) & (rows["quantity"] == quantity)]
+            radii.append(f"{rows['radius'].iloc[0] / NM:.0f}")
+        found[f"radius by sample {law} {cluster} {quantity}"] = ", ".join(radii)
     return found
 
 

@@ -56,7 +56,7 @@ def figure5(table, law):
     for axes, name in ((left, "agglomeration $X$"), (right, "fragmentation $N_\\mathrm{s}$")):
         velocity_axis(axes, shown)
         axes.set(ylabel=name, ylim=(-0.03, 1.03))
-    right.legend(loc="lower right")
+    figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=len(radii))
     return figure
 
 

@@ -28,6 +28,7 @@ def masses(groups):
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Mass in pieces of at least a mass")
     panels = figure.subplots(1, len(groups), sharey=True, squeeze=False)[0]
     edges = np.geomspace(1e-4, 1.0, 81)
+    fastest = max((row["velocity"].item() for own in groups.values() for row in own), default=1.0)
     for axes, (name, own) in zip(panels, groups.items(), strict=True):
         axes.set_title(cluster_text(name), pad=2)
         axes.set(xscale="log", ylim=(0, 1.02))
@@ -35,13 +36,13 @@ def masses(groups):
             empty(axes, "no collisions")
         velocities = np.array(sorted({row["velocity"].item() for row in own}))
         shown = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))] if own else ()
-        for k, velocity in enumerate(shown):
+        for velocity in shown:
             curves = []
             for row in own:
                 if row["velocity"].item() == velocity:
                     part = row["piece_mass"].values / row["mass"].item()
                     curves.append([part[part >= edge].sum() for edge in edges])
-            colour = colormaps["viridis"](0.9 * k / max(len(shown) - 1, 1))
+            colour = colormaps["viridis"](0.95 * velocity / fastest)
             axes.plot(edges, np.mean(curves, axis=0), color=colour, label=f"{velocity:g} m s$^{{-1}}$")
         axes.legend(loc="lower left")
     panels[0].set_ylabel("part of the mass")

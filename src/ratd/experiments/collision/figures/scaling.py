@@ -14,6 +14,8 @@ WIDEST = 0.35
 RATIO = 35.0
 """v_frag/v_stick that the printed velocities have at A = 0.5 ns (34 to 36)."""
 FACES = {"velocity": None, "spring": "white"}
+LARGE = 6.5
+"""Size of the markers of another surface energy."""
 MARKS = {0.5e-9: "o", 1.0e-9: "s", 1.5e-9: "^"}
 
 
@@ -48,14 +50,16 @@ def scaling(thresholds):
         colour = colour_of(row["radius"])
         face = FACES[row["friction"]] or colour
         marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"], atol=0.0)), "D")
-        size = 6.5 if abs(row["surface_energy"] - 0.025) > 1e-6 else 4.0
+        other = abs(row["surface_energy"] - 0.025) > 1e-6
         axes.errorbar(
-            row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, ms=size,
-            capsize=1.5, ls="none",
+            row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, capsize=1.5,
+            ms=LARGE if other else 4.0, zorder=2 if other else 3, ls="none",
         )  # fmt: skip
     line = np.array([own["sticking_velocity"].min() / 1.5, own["sticking_velocity"].max() * 1.5])
     axes.plot(line, RATIO * line, color="black", lw=0.8, ls=(0, (4, 2)))
     axes.set(xscale="log", yscale="log")
+    # the dashed line goes on beyond the points
+    axes.set_ylim(0.8 * own["velocity"].min(), 1.8 * own["velocity"].max())
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
     axes.set(xlabel="sticking velocity of two spheres [m s$^{-1}$]", ylabel="fragmentation velocity [m s$^{-1}$]")
@@ -70,6 +74,7 @@ def scaling(thresholds):
     ]
     handles += [
         Line2D([], [], ls="none", marker="o", color="black", mfc="white", label="springs"),
+        Line2D([], [], ls="none", marker="o", color="black", ms=LARGE, label="other $\\gamma$"),
         Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label=f"{RATIO:g} times"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
