@@ -184,9 +184,11 @@ def what_contacts_hold(grown, firm, table):
         "bound.largest below": float(grown.loc[~above, "nm"].max()),
         "bound.load": float(load.median()),
         "bound.small omega": float((grown["printed"] < 5e8).mean()),
-        "bound.over firm": int((table["omega_first_loss"] > table["firm_bound"]).sum()),
         "bound.spun": len(table),
     }
+    beyond = table.loc[table["omega_first_loss"] > table["firm_bound"], "type"]
+    values["bound.over firm"] = len(beyond)
+    values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond == kind).any())
     strength = strength_omega(table)
     for kind in TYPES:
         for name in CLASSES:
