@@ -111,8 +111,6 @@ def _how(letter, table, fragments):
     shares = fragment_shares(fragments, "half")
     single = shares[(shares["class"] == "1 monomer") & shares["type"].isin(BAM)]
     found = [Measured(row["mass_share"], row["mass_share_error"]) for row in single.to_dict("records")]
-    for kind, share in zip(single["type"], found, strict=True):
-        values[f"{letter}.single {kind}"] = Measured(100 * share.value, 100 * share.error)
     values[f"{letter}.holds single"] = all_of(is_above(share, 0.8) for share in found)
     gain = table["n_contacts_max"] / table["n_contacts"]
     gains = {kind: median(gain[table["type"] == kind]) for kind in TYPES}

@@ -1,18 +1,15 @@
 """What leaves a grain while the first half of its mass does."""
 
 from ratd.base.measured import Measured
-from ratd.base.units import NM
-from ratd.experiments.spin_up.findings.ensemble import CLASSES
-from ratd.experiments.spin_up.fragmentation import exponents, fragment_shares
+from ratd.experiments.spin_up.fragmentation import exponents, fragment_shares, size_class
 
 __all__ = ["of_exponents", "of_shares"]
 
 
 def of_shares(letter, fragments):
-    """Where the mass goes that leaves while the first half does: shares [%] by type and class of size."""
+    """Where the mass goes that leaves while the first half does: shares [%] by type and `size_class`."""
     values = {}
-    for name, (low, high) in CLASSES.items():
-        part = fragments[(fragments["a_eff"] / NM).between(low, high)]
+    for name, part in fragments.groupby(size_class(fragments["a_eff"]), observed=True):
         for row in fragment_shares(part, "half").to_dict("records"):
             start = f"{letter}.fragments {row['type']} {name} {row['class']}"
             values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
