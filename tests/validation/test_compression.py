@@ -11,7 +11,7 @@ from ratd.validation import compression
 from ratd.validation.tables import as_dataset
 
 SMALL = {
-    "material": "ice", "n": 64, "seed": 1, "strain_rate": 5e-5, "until_phi": 0.2, "timestep_factor": 0.14,
+    "material": "ice", "n": 64, "seed": 1, "strain_rate": 2e-4, "until_phi": 0.2, "timestep_factor": 0.14,
     "lammps_step": 0.1,
 }  # fmt: skip
 

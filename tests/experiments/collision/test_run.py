@@ -88,6 +88,7 @@ def test_built_clusters_are_at_rest_and_others_come_to_rest():
         ({"velocity": 0.0}, "velocity is 0.0; it must be a number above 0"),
         ({"velocity": -3.0}, "velocity is -3.0"),
         ({"velocity": np.nan}, "velocity is nan"),
+        ({"velocity": 1e5}, r"velocity is 100000 m/s: in a timestep of .* take a timestep of at most"),
         ({"law": "hertz"}, "law is 'hertz'; allowed are 'dmt', 'jkr'"),
         ({"law": 3}, "law is 3; allowed are"),
         ({"impact_parameter": 1.0}, "impact_parameter is 1.0"),

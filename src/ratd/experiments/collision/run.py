@@ -25,6 +25,9 @@ RELAXATION_STEP = 1 / 32
 explicit, feeds spheres of several contacts."""
 DURATION = 3e-6
 """How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
+FARTHEST = 0.02
+"""Part of the smallest radius by which the clusters may come nearer in a step: faster ones would pass through each
+other without a contact."""
 
 
 def impact_energy(mass_a, mass_b, velocity):
@@ -139,6 +142,12 @@ def collide(
     elif not timestep <= (longest := longest_step(radius, material, law)):
         raise InputError(
             f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
+        )
+    nearer = FARTHEST * radius.min()
+    if velocity * timestep > nearer:
+        raise InputError(
+            f"velocity is {velocity:g} m/s: in a timestep of {timestep:.3g} s the clusters come nearer by more than "
+            f"{FARTHEST:.0%} of the smallest radius; take a timestep of at most {nearer / velocity:.2g} s."
         )
     if not relaxed:
         a, b = (at_rest(a, law), at_rest(b, law)) if b is not a else (at_rest(a, law),) * 2
