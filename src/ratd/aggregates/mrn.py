@@ -5,7 +5,16 @@ import numpy as np
 from ratd.aggregates.radii import mrn_moment, mrn_radii
 from ratd.base.errors import InputError
 
-__all__ = ["LARGEST", "SMALLEST", "mrn", "mrn_length", "moment_of_length", "part_above", "sample_length"]
+__all__ = [
+    "LARGEST",
+    "SMALLEST",
+    "free_samples",
+    "moment_of_length",
+    "mrn",
+    "mrn_length",
+    "part_above",
+    "sample_length",
+]
 
 SMALLEST, LARGEST = 50e-9, 2.5e-6
 """Ends of the distribution [m] (Umstaetter & Urbassek 2020, Sect. 2.2)."""
@@ -87,6 +96,11 @@ def sample_length(radii, q):
     radii = np.asarray(radii, dtype=float)
     scale = radii.max()
     return float(scale * np.mean((radii / scale) ** q) ** (1.0 / q))
+
+
+def free_samples(n, number=400):
+    """Samples of n radii each, of whatever mass comes, list of (n,) array [m]; what they scatter by is no choice."""
+    return [mrn(n, seed, mass_within=None, length_within=None) for seed in range(number)]
 
 
 def part_above(radius, smallest=SMALLEST, largest=LARGEST):

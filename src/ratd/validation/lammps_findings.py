@@ -90,7 +90,8 @@ def of_lammps(table):
     values["lammps.fewest"], values["lammps.most"] = int(monomers.min()), int(monomers.max())
     for (way, mark), part in found.groupby(["way", "mark"]):
         name = f"lammps.{way} {'first' if mark == 'first loss' else 'quarter'}"
-        values |= {name: median(part["ratio"].dropna())} | of_each(name, part["ratio"].dropna())
+        ratio = part["ratio"].dropna()
+        values |= {name: median(ratio)} | of_each(name, ratio)
     return values
 
 

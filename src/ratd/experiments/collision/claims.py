@@ -6,7 +6,7 @@ A test fails then, and somebody rereads the sentence.
 import numpy as np
 
 from ratd.base.units import NM
-from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
@@ -47,15 +47,18 @@ class _Found:
         own = self.cell(law, cluster, velocity)
         return own.loc[(own["sample"] == 1) & (own["seed"] == 0), column].iloc[0]
 
+    def threshold(self, law, cluster):
+        """Row of the fragmentation velocity of central collisions."""
+        own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
+        return own[own["impact_parameter"] == 0].iloc[0]
+
     def frag(self, law, cluster):
         """Fragmentation velocity [m/s]."""
-        own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
-        return own[own["impact_parameter"] == 0]["velocity"].iloc[0]
+        return self.threshold(law, cluster)["velocity"]
 
     def over_stick(self, law, cluster):
         """Fragmentation velocity over the sticking velocity of two of the spheres."""
-        own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
-        return self.frag(law, cluster) / own["sticking_velocity"].iloc[0]
+        return self.frag(law, cluster) / self.threshold(law, cluster)["sticking_velocity"]
 
     def alike(self, law, quantity):
         """Radius [m] of the equal spheres that MRN is like."""

@@ -1,11 +1,12 @@
 """docs/collision.md: the values of its slots, from docs/collision/data; `.claims` has what its sentences say."""
 
 import numpy as np
+import pandas as pd
 
-from ratd.aggregates.mrn import moment_of_length, mrn, sample_length
+from ratd.aggregates.mrn import free_samples, moment_of_length, sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
-from ratd.experiments.collision.figures.look import is_equal
+from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.experiments.collision.likeness import likeness_table
@@ -72,7 +73,7 @@ def values(table, thresholds, likeness):
     found |= _by_sample(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
-    found |= free_samples()
+    found |= _free()
     found |= {
         "collisions": str(len(table)),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
@@ -167,18 +168,19 @@ def _largest(table):
 
 
 def _by_sample(table, law, cluster):
-    """``radius by sample LAW CLUSTER N_s`` and ``X``: radii [nm] of the equal spheres that each sample is like."""
+    """``radius by sample LAW CLUSTER N_s`` and so on: radii [nm] of the equal spheres that each sample is like."""
     own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
     one = own["cluster"] == cluster
-    found = {}
-    for quantity in ("N_s", "X"):
-        radii = []
-        for sample in sorted(own.loc[one, "sample"].unique()):
-            rows = likeness_table(own[~one | (own["sample"] == sample)], samples=2)
-            rows = rows[(rows["cluster"] == cluster) & (rows["quantity"] == quantity)]
-            radii.append(f"{rows['radius'].iloc[0] / NM:.0f}")
-        found[f"radius by sample {law} {cluster} {quantity}"] = ", ".join(radii)
-    return found
+    # the least bootstrap: its errors are not told
+    rows = pd.concat(
+        likeness_table(own[~one | (own["sample"] == sample)], samples=2)
+        for sample in sorted(own.loc[one, "sample"].unique())
+    )
+    rows = rows[rows["cluster"] == cluster]
+    return {
+        f"radius by sample {law} {cluster} {quantity}": ", ".join(f"{radius / NM:.0f}" for radius in part["radius"])
+        for quantity, part in rows.groupby("quantity")
+    }
 
 
 def _late(table):
@@ -211,9 +213,9 @@ def _exponents(thresholds):
     return found
 
 
-def free_samples(number=400, spheres=5000):
+def _free():
     """What free samples of the MRN law scatter by, as texts: share of the largest sphere, L_4.6 [um], 16 to 84 %."""
-    samples = [mrn(spheres, seed, mass_within=None, length_within=None) for seed in range(number)]
+    samples = free_samples(5000)
     shares = [radii[0] ** 3 / np.sum(radii**3) for radii in samples]
     lengths = [sample_length(radii, 4.6) * 1e6 for radii in samples]
     low, high = np.quantile([shares, lengths], [0.16, 0.84], axis=1)

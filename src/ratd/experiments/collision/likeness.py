@@ -12,7 +12,7 @@ from ratd.aggregates.mrn import moment_of_length
 from ratd.experiments.collision.fragmentation import bootstrap_means, means
 from ratd.pipeline.kinds import Kind, entries, register
 
-__all__ = ["COLUMNS", "QUANTITIES", "likeness", "likeness_table"]
+__all__ = ["COLUMNS", "QUANTITIES", "is_equal", "likeness", "likeness_table"]
 
 QUANTITIES = {"X": "X", "N_s": "N_s", "energy_half": "energy left at 0.5 us"}
 """Column of `ratd.experiments.collision.tables.COLUMNS` -> what it is called."""
@@ -35,6 +35,11 @@ FEWEST = 3
 """Radii that must have a velocity for it to count."""
 POINTS = 201
 """Radii that are tried, evenly in the logarithm."""
+
+
+def is_equal(table):
+    """Whether collisions are of equal spheres: Series of bool of a table, bool of one of its rows."""
+    return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
 
 
 def likeness(cluster, equal, quantity, samples=500, seed=0):
@@ -105,7 +110,7 @@ def likeness_table(table, samples=500):
         Of the bootstrap.
     """
     table = table[table["impact_parameter"] == 0.0]
-    same = table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
+    same = is_equal(table)
     found = []
     for law, part in table.groupby("law", sort=False):
         alike = part[same.loc[part.index] & (part["second_contact"] == 0.5)]

@@ -7,7 +7,7 @@ import pandas as pd
 
 from ratd.experiments.collision.files import SERIES
 from ratd.experiments.collision.fragmentation import agglomeration, fragmentation_number, fragmentation_velocity
-from ratd.experiments.collision.likeness import likeness_table
+from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.sticking import breaking_energy_of, sticking_velocity
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
@@ -202,7 +202,7 @@ def threshold_table(table, material_of_energy, samples=2000):
     for names, part in table.groupby(["law", "cluster", "impact_parameter"], sort=False):
         threshold = fragmentation_velocity(part, samples=samples)
         one = part.iloc[0]
-        equal = one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9)
+        equal = is_equal(one)
         radius = one["largest_radius"] if equal else np.nan
         row = dict(zip(("law", "cluster", "impact_parameter"), names, strict=True)) | {
             name: one[name] for name in ("damping_time", "surface_energy", "friction")

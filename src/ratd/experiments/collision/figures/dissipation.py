@@ -5,12 +5,12 @@ import numpy as np
 from ratd.experiments.collision.figures.look import (
     cluster_text,
     collisions_of,
-    is_equal,
     label_of,
     law_text,
     velocity_axis,
 )
 from ratd.experiments.collision.fragmentation import means
+from ratd.experiments.collision.likeness import is_equal
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 WAYS = {

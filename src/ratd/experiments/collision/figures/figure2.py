@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from ratd.aggregates.mrn import moment_of_length, mrn, mrn_length, part_above, sample_length
+from ratd.aggregates.mrn import free_samples, moment_of_length, mrn_length, part_above, sample_length
 from ratd.experiments.collision.figures.look import radii_of
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY, ONE_COLUMN, new_figure, styled
 
 HIGHEST = 8.0
-FREE = 400
-"""Free samples, of any mass, whose scatter is shown."""
 
 
 @styled
@@ -29,8 +27,7 @@ def figure2(samples):
     axes = figure.subplots()
     q = np.linspace(1.0, HIGHEST, 141)
     number = round(len(samples[0]) / part_above(samples[0].min()))
-    free = [mrn(number, seed, mass_within=None, length_within=None) for seed in range(FREE)]
-    lengths = [[sample_length(radii, one) * 1e6 for one in q] for radii in free]
+    lengths = [[sample_length(radii, one) * 1e6 for one in q] for radii in free_samples(number)]
     low, high = np.quantile(lengths, [0.16, 0.84], axis=0)
     axes.fill_between(q, low, high, color="#56B4E9", alpha=0.35, lw=0, label=f"free samples of {number}, 16 to 84 %")
     for k, radii in enumerate(samples):

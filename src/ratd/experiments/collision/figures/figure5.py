@@ -5,7 +5,6 @@ import numpy as np
 from ratd.experiments.collision.figures.look import (
     collisions_of,
     colour_of,
-    is_equal,
     law_text,
     marker_of,
     plot_means,
@@ -15,6 +14,7 @@ from ratd.experiments.collision.figures.look import (
 )
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
+from ratd.experiments.collision.likeness import is_equal
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 

@@ -4,10 +4,10 @@ import numpy as np
 
 from ratd.experiments.collision.figures.look import (
     MRN_STYLE,
+    SMALLER,
     cluster_text,
     collisions_of,
     colour_of,
-    is_equal,
     law_text,
     marker_of,
     plot_means,
@@ -17,11 +17,12 @@ from ratd.experiments.collision.figures.look import (
 )
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_RADII
+from ratd.experiments.collision.likeness import is_equal
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
 CUT = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
 """How the cluster without its smallest spheres looks."""
-BESIDE = (0.22e-6, 0.26e-6, *(PRINTED_RADII[quantity][0] for quantity in ("N_s", "X")))
+BESIDE = (*SMALLER, *(PRINTED_RADII[quantity][0] for quantity in ("N_s", "X")))
 """Radii [m] of the equal spheres: two smaller than those of the paper, and the two that it likens MRN to."""
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import cluster_text, shown
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of
 from ratd.experiments.collision.tables import mean_energy, series_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
@@ -64,4 +64,4 @@ def groups_of(paths, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure7(groups_of(files["runs"], settings["law"], shown(settings)))
+    return figure7(groups_of(files["runs"], settings["law"], clusters_of(settings)))

@@ -3,8 +3,9 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, is_equal, law_text
+from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, law_text
 from ratd.experiments.collision.fragmentation import mean_and_error, means
+from ratd.experiments.collision.likeness import is_equal
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
 
 MOST = 6

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib import colormaps
 
 from ratd.experiments.collision.fragmentation import means
+from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.printed import RADII
 from ratd.pictures.style import GREY
 from ratd.pipeline import io
@@ -12,7 +13,9 @@ from ratd.pipeline.blocks import rows
 __all__ = [
     "CLUSTERS",
     "MRN_STYLE",
+    "SMALLER",
     "cluster_text",
+    "clusters_of",
     "collisions_of",
     "colour_of",
     "label_of",
@@ -20,7 +23,6 @@ __all__ = [
     "plot_means",
     "radii_of",
     "radius_label",
-    "shown",
 ]
 
 CLUSTERS = {
@@ -40,8 +42,10 @@ LAWS = {"velocity": "friction by rate", "spring": "friction by springs"}
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
 MARKERS = "osv^P*X<>"
-TRIED = (0.22e-6, 0.26e-6, *RADII)
-"""Radii [m] of equal spheres, the paper's and smaller ones, from which colours and markers are taken."""
+SMALLER = (0.22e-6, 0.26e-6)
+"""Radii [m] of equal spheres that are smaller than those of the paper."""
+TRIED = (*SMALLER, *RADII)
+"""Radii [m] of equal spheres from which colours and markers are taken."""
 _SCALE = colormaps["viridis"]
 
 
@@ -85,7 +89,7 @@ def radii_of(files):
     return [row["radius"].values for row in rows(io.read(files["built"][0], "built_clusters"), "built_clusters")]
 
 
-def shown(settings):
+def clusters_of(settings):
     """Clusters of the panels of a figure: equal spheres, MRN, and if asked for MRN without its smallest spheres."""
     return [settings[name] for name in ("twin", "mrn", "cut") if name in settings]
 
@@ -93,14 +97,9 @@ def shown(settings):
 def label_of(table):
     """Text for the collisions of one cluster: the radius of its spheres, else its name."""
     one = table.iloc[0]
-    if one["largest_radius"] <= one["mean_sphere_radius"] * (1.0 + 1e-9):
+    if is_equal(one):
         return radius_label(one["largest_radius"])
     return cluster_text(one["cluster"])
-
-
-def is_equal(table):
-    """Which collisions of a table are of equal spheres, Series of bool."""
-    return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
 
 
 def plot_means(axes, table, quantity, label, **style):

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import cluster_text, shown
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -63,4 +63,4 @@ def rows_by_cluster(paths, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return masses(rows_by_cluster(files["runs"], settings["law"], shown(settings)))
+    return masses(rows_by_cluster(files["runs"], settings["law"], clusters_of(settings)))

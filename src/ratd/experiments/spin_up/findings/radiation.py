@@ -13,10 +13,8 @@ __all__ = ["NONE", "of_radiation"]
 
 SILICATE = infrared_coefficient(0.18, 16.4)
 """F_IR of silicate, where the printed 0.4 is near that of graphite."""
-ONE_STAR = DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6)
-"""Light of a single hot star."""
 SURROUNDINGS = {
-    "one star": ONE_STAR,
+    "one star": DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6),
     "directed": DIFFUSE._replace(anisotropy=0.7),
     "bluer": DIFFUSE._replace(wavelength=0.8e-6),
     "denser": DIFFUSE._replace(hydrogen=10.0 * DIFFUSE.hydrogen),
@@ -53,9 +51,8 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
         " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With " greatest" behind it the
         largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
-        drags. With "over" for "ours" ours over the
-        printed one. For `shown` also, without errors, with " first" the first loss in place of the mark, with " DMT"
-        omega `DMT` times as great, and with a name of `SURROUNDINGS`.
+        drags. With "over" for "ours" ours over the printed one. For `shown` also, without errors, with " first" the
+        first loss in place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
     """
     values = {}
     for behind, how in (("", {}), (" porous", {"porous": True}), (" cool", {"coefficient": SILICATE})):
