@@ -117,10 +117,6 @@ def marks_compared(table):
                 part = of_class(table[table["type"] == kind], name)
                 known = part[part[mark] > 0]
                 values[f"marks.{kind} {name} {word}"] = geometric_mean(known[mark] / known["printed"], cell_of(known))
-    for kind in TYPES:
-        part = table[table["type"] == kind]
-        both = part[MARK] / part["omega_disr"]
-        values[f"marks.{kind} apart"] = float((np.abs(np.log(both)) > math.log(1.25)).mean())
     return values
 
 
