@@ -44,6 +44,8 @@ AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
+OTHER_RANGES = ((0.008, 0.04), (0.01, 0.04), (0.012, 0.055), (0.015, 0.05), (0.02, 0.055))
+"""Others of that width, which tell how much the exponent hangs on the choice."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
@@ -78,6 +80,9 @@ def of_set(name, table):
     root = math.sqrt(gyration)
     r_0 = table["monomer_radius"].item()
     found["gyration"] = Measured(root / r_0, 0.5 * error / root / r_0)
+    # of a cluster over N^(1/2) r_0; the pressure that Sect. 4 of the paper derives goes with its sixth power
+    width, spread = (number / math.sqrt(found["N"]) for number in found["gyration"])
+    found |= {"width": Measured(width, spread), "width_6": Measured(width**6, 6.0 * width**5 * spread)}
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
     for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
         found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
@@ -96,12 +101,16 @@ def of_set(name, table):
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
     if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
         found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
+        others = [_several(fit_power_law(table, *each))[0].value for each in (LOW_RANGE, *OTHER_RANGES)]
+        found |= {"exponent_least": min(others), "exponent_most": max(others)}
+    found["rolling_over_made"] = overtakes(table, "rolling", "made", found["static"])
     found["rolling_over_damping"] = overtakes(table, "rolling", "damping", found["static"])
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = overtakes(table, first, second)
-    part = np.abs(table["energy_residual"].values / table["work"].values)
-    for phi in [phi for phi in (0.03, 0.1, 0.3) if phi < last]:
-        found[f"residual_{phi:g}"] = float(np.nanmax(part[:, table["phi"].values > phi]))
+    part = table["energy_residual"].values / table["work"].values
+    for phi in [phi for phi in (0.01, 0.02, 0.03, 0.1, 0.3) if phi < last]:
+        found[f"residual_{phi:g}"] = float(np.nanmax(np.abs(part[:, table["phi"].values > phi])))
+        found[f"untold_{phi:g}"] = Measured(*mean_of(-part[:, _bin_at(table, phi)]))
     for k, phi in enumerate(table["snapshot_phi"].values):
         nominal = f"{float(f'{phi:.1g}'):g}"
         found[f"slope_{nominal}"] = _measured(slope_of_structure(table, k))
@@ -381,7 +390,7 @@ def verdicts(values, sets):
             found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
-        found["high_density"] = "does not depend" if alike else "depends"
+        found["high_density"] = "hardly depends" if alike else "depends"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
@@ -428,11 +437,6 @@ def findings(sets, entries, spun, lammps=None, box=None):
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )
     values |= of_closed_formulae()
-    if HIGH in sets:
-        # of a cluster over N^(1/2) r_0; the pressure that Sect. 4 of the paper derives goes with its sixth power
-        width, error = (number / math.sqrt(values[f"{HIGH}.N"]) for number in values[f"{HIGH}.gyration"])
-        values["width"] = Measured(width, error)
-        values["width_6"] = Measured(width**6, 6.0 * width**5 * error)
     if entries is not None:
         values |= of_tension(entries)
     if lammps is not None:
