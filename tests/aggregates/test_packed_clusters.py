@@ -83,7 +83,7 @@ def test_the_clusters_of_the_paper():
             r"do not fit: they need a filling factor phi of 0.948",
         ),
         ({"radii": [1e-6, 1e-6], "radius": 1.9e-6}, "the two largest spheres.* it must be at least 2e-06 m"),
-        ({"radii": [1e-6, -1e-6]}, "radii have the shape .* above 0"),
+        ({"radii": [1e-6, -1e-6]}, r"radii\[1\] is -1e-06; .* above 0"),
         ({"radii": [1e-6]}, "at least two numbers"),
         ({"radii": "many"}, "radii are no numbers"),
         ({"radius": np.nan}, "radius is nan"),

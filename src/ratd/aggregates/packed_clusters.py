@@ -96,8 +96,11 @@ def _checked(radii, radius, second_contact, seed):
         radii = np.array(radii, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError("radii are no numbers; they must be a list of at least two numbers above 0, in m.") from None
-    if radii.ndim != 1 or len(radii) < 2 or not (np.isfinite(radii) & (radii > 0.0)).all():
+    if radii.ndim != 1 or len(radii) < 2:
         raise InputError(f"radii have the shape {radii.shape}; they must be at least two numbers above 0, in m.")
+    wrong = np.flatnonzero(~(np.isfinite(radii) & (radii > 0.0)))
+    if len(wrong):
+        raise InputError(f"radii[{wrong[0]}] is {radii[wrong[0]]:g}; they must be at least two numbers above 0, in m.")
     if not (isinstance(radius, int | float | np.number) and np.isfinite(radius) and radius > 0.0):
         raise InputError(f"radius is {radius!r}; it must be a number above 0, in m.")
     if not (isinstance(second_contact, int | float | np.number) and 0.0 <= second_contact <= 1.0):

@@ -37,6 +37,11 @@ def test_one_piece_has_no_second():
     assert float(found["X"]) == 1.0 and float(found["N_s"]) == 0.0
 
 
+def test_what_is_no_run_is_refused():
+    with pytest.raises(InputError, match="run is DataFrame without radius"):
+        fragmentation(pd.DataFrame({"X": [1.0]}))
+
+
 def table(velocities, mean, number=40, scatter=0.05, seed=1):
     rng = np.random.default_rng(seed)
     rows = [(v, mean(v) + scatter * rng.normal()) for v in velocities for _ in range(number)]
@@ -69,12 +74,27 @@ def test_bad_tables_are_refused(rows, words):
         fragmentation_velocity(rows)
 
 
-def test_rotations_of_one_sample_do_not_make_the_error_of_two_samples_smaller():
+def test_the_bootstrap_has_the_standard_error_of_the_mean():
+    """Of few rotations and of few samples too, whose rotations do not make the error smaller; at all velocities."""
     rng = np.random.default_rng(5)
-    samples = pd.DataFrame({"velocity": 3.0, "sample": np.repeat([1, 2], 40), "X": np.repeat([0.0, 1.0], 40)})
-    means = bootstrap_means(samples, "X", [3.0], 20_000, rng)[0]
-    # two draws of two values: 0, 1/2, 1/2, 1
-    np.testing.assert_allclose([np.mean(means == value) for value in (0.0, 0.5, 1.0)], [0.25, 0.5, 0.25], atol=0.02)
-    rotations = samples.assign(sample=1)
-    means = bootstrap_means(rotations, "X", [3.0], 20_000, rng)[0]
-    assert means.std() == pytest.approx(0.5 / np.sqrt(80), rel=0.03)
+    values = np.array([0.0, 1.0, 0.2])
+    samples = pd.DataFrame({"sample": np.repeat([1, 2, 3], 40), "X": np.repeat(values, 40)})
+    table = pd.concat([samples.assign(velocity=3.0), samples.assign(velocity=4.0, X=1.0 - samples["X"])])
+    error = values.std(ddof=1) / np.sqrt(3)
+    drawn = bootstrap_means(table, "X", [3.0, 4.0], 20_000, rng)
+    assert drawn.std(axis=1) == pytest.approx([error, error], rel=0.03)
+    assert drawn.mean(axis=1) == pytest.approx([values.mean(), 1.0 - values.mean()], abs=0.01)
+    # a sample is drawn with all of its velocities
+    np.testing.assert_allclose(drawn.sum(axis=0), 1.0)
+    few = pd.DataFrame({"velocity": 3.0, "X": values})
+    assert bootstrap_means(few, "X", [3.0], 20_000, rng).std() == pytest.approx(error, rel=0.03)
+
+
+def test_a_velocity_that_one_sample_has_alone_counts_with_its_rotations():
+    rng = np.random.default_rng(5)
+    table = pd.DataFrame(
+        {"velocity": [1, 1, 1, 1, 2, 2], "sample": [1, 1, 2, 2, 1, 1], "X": [0.9, 0.9, 0.9, 0.9, 0, 0.1]}
+    )
+    drawn = bootstrap_means(table, "X", [1, 2], 5000, rng)
+    assert np.isfinite(drawn).all() and drawn[1].std() == pytest.approx(0.05, rel=0.05)
+    assert fragmentation_velocity(table)["found"] == 1.0

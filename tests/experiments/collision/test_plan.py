@@ -139,7 +139,7 @@ def test_the_default_set_is_a_part_of_the_study():
     def asked(plan):
         for cell, rotation in plan.queue():
             cluster = plan.cluster(plan.material_of(cell.law), cell.cluster)
-            settings = plan.settings_of(cell) | {"rotations": rotation, "snapshot_every": 1, "snapshot_rotations": []}
+            settings = plan.settings_of(cell) | {"rotations": rotation, "snapshots": {}}
             yield repr((cell.law, cell.cluster, cell.sample, sorted(cluster.items()), settings))
 
     wanted, there = set(asked(default)), set(asked(study))

@@ -16,7 +16,7 @@ from ratd.experiments.collision.figures.figure8 import figure8
 from ratd.experiments.collision.figures.masses import masses, rows_by_cluster
 from ratd.experiments.collision.figures.page import page
 from ratd.experiments.collision.figures.scaling import scaling
-from ratd.experiments.collision.figures.snapshots import picture, row_of
+from ratd.experiments.collision.figures.snapshots import origin_of, picture, positions, row_of
 from ratd.experiments.collision.plan import Plan
 from ratd.experiments.collision.tables import COLUMNS, THRESHOLDS, cluster_table, collision_table, threshold_table
 from ratd.pipeline import blocks, io, queue
@@ -69,22 +69,23 @@ def done(tmp_path_factory):
 
     with pytest.raises(KeyboardInterrupt):
         queue.work(study.tasks(plan(folder), folder / "data"), say=stop)
-    assert queue.work(study.tasks(plan(folder), folder / "data"), until=0.0, say=said.append) == 5
+    assert queue.work(study.tasks(plan(folder), folder / "data"), until=0.0, say=said.append) == 6
     assert queue.work(study.tasks(plan(folder), folder / "data"), say=said.append) == 0
     assert queue.work(study.tasks(plan(folder), folder / "data"), say=said.append) == 0
-    assert len(said) == 8 and said[0].startswith("velocity equal sample 1 2 m/s rotation 0: X ")
+    assert len(said) == 9 and said[1].startswith("velocity equal sample 1 2 m/s rotation 0: X ")
     return folder
 
 
 def files(done):
-    return sorted((done / "data").rglob("*.nc"))
+    return sorted((done / "data" / "velocity").glob("*.nc"))
 
 
 def test_tables_hold_each_collision_once_in_order(done):
     rows = [(row["cluster"].item(), row["velocity"].item(), row["seed"].item()) for row in all_rows(done)]
     assert rows == [(name, v, seed) for name in ("equal", "unequal") for v in (2.0, 25.0) for seed in (0, 1)]
     assert queue.state(study.tasks(plan(done), done / "data"), "collisions").splitlines() == [
-        f"{done}/data/velocity/{cluster}.nc: 4 of 4 collisions" for cluster in ("equal", "unequal")
+        f"{done}/data/{study.PICTURES[0]}: 1 of 1 collisions",
+        *(f"{done}/data/velocity/{cluster}.nc: 4 of 4 collisions" for cluster in ("equal", "unequal")),
     ]
     assert len({row["source"].item() for row in all_rows(done)}) == 1
 
@@ -150,17 +151,23 @@ def test_figures_draw(done, name):
     assert not any("no collisions" in text for text in words)
 
 
-def test_the_queue_keeps_no_snapshots(done):
+def test_the_queue_keeps_snapshots_of_what_is_shown_alone(done):
     assert all(row.sizes.get("snapshot", 0) == 0 for row in all_rows(done))
     with pytest.raises(InputError, match="no collision with snapshots has the rotation 0"):
         row_of(files(done), 0)
+    shown = row_of([done / "data" / study.PICTURES[0]], 0)
+    (same,) = [row for row in all_rows(done) if (row["cluster"], row["velocity"], row["seed"]) == ("unequal", 25.0, 0)]
+    assert shown.sizes["snapshot"] == 3 and shown["X"].item() == same["X"].item()
+    # each of the two came as one piece, the giant first of its own
+    origin = origin_of(positions(shown)[2])
+    assert origin.tolist() == [0] * (len(origin) // 2) + [1] * (len(origin) // 2)
 
 
 def test_pictures_and_page_of_a_collision_with_snapshots(done, tmp_path):
     own = plan(done)
     (cell,) = [cell for cell in own.cells if (cell.cluster, cell.velocity) == ("unequal", 25.0)]
     settings = own.settings_of(cell)
-    assert settings["snapshot_rotations"] == [0]
+    assert settings["snapshots"] == {"0": 6}
     cluster = study.built(own.cluster(SILICA, "unequal"), 1)
     row = study.collided(cluster, settings, 0, snapshot_every=6)
     path = tmp_path / "run.nc"

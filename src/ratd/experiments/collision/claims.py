@@ -7,9 +7,9 @@ import numpy as np
 
 from ratd.base.units import NM
 from ratd.experiments.collision.likeness import is_equal
-from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error
-from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
+from ratd.experiments.collision.thresholds import head_on, is_close, of_paper
 
 __all__ = ["claims"]
 
@@ -47,13 +47,19 @@ class _Found:
         own = self.cell(law, cluster, velocity)
         return own.loc[(own["sample"] == 1) & (own["seed"] == 0), column].iloc[0]
 
-    def threshold(self, law, cluster):
-        """Row of the fragmentation velocity of central collisions."""
+    def apart(self, column, cluster, other, velocity, law="velocity"):
+        """By how many standard errors the means of two clusters differ, the other under another law if wanted."""
+        parts = self.cell("velocity", cluster, velocity), self.cell(law, other, velocity)
+        (one, error), (two, error_two) = (mean_and_error(part, column) for part in parts)
+        return abs(one - two) / np.hypot(error, error_two)
+
+    def threshold(self, law, cluster, impact_parameter=0.0):
+        """Row of a fragmentation velocity."""
         own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
-        return own[own["impact_parameter"] == 0].iloc[0]
+        return own[np.isclose(own["impact_parameter"], impact_parameter)].iloc[0]
 
     def frag(self, law, cluster):
-        """Fragmentation velocity [m/s]."""
+        """Fragmentation velocity [m/s] of central collisions."""
         return self.threshold(law, cluster)["velocity"]
 
     def over_stick(self, law, cluster):
@@ -80,6 +86,9 @@ def _which_radius(of):
         ),
         "by N_s the radius with rate friction is below those that the paper tried": of.alike("velocity", "N_s")
         < 0.28e-6,
+        "the recipe is good to a quarter for v_frag": 0.72
+        < of.frag("velocity", "353nm") / of.frag("velocity", "mrn")
+        < 0.85,
         "the recipe's radius comes apart before MRN, and breaks more": of.frag("velocity", "353nm")
         < of.frag("velocity", "mrn") - 3.0
         and of.mean("N_s", "velocity", "353nm", 20) > of.mean("N_s", "velocity", "mrn", 20) + 0.4,
@@ -94,11 +103,13 @@ def _which_radius(of):
             and of.mean("X", "velocity", "mrn", speed) < of.mean("X", "velocity", "260nm", speed)
             for speed in (20, 25, 30)
         ),
-        "energy left of MRN lies below the equal spheres in slow impacts and crosses in fast ones": of.mean(
+        "energy left of MRN lies below the equal spheres in slow impacts and not in fast ones": of.mean(
             "energy_half", "velocity", "mrn", 15
         )
         < of.mean("energy_half", "velocity", "220nm", 15)
         and of.mean("energy_half", "velocity", "mrn", 40) > of.mean("energy_half", "velocity", "260nm", 40),
+        "and cannot choose a radius in fast ones": mean_and_error(of.cell("velocity", "mrn", 40), "energy_half")[1]
+        > of.mean("energy_half", "velocity", "353nm", 40) - of.mean("energy_half", "velocity", "220nm", 40),
         "of MRN sliding takes most": of.mean("by_sliding", "velocity", "mrn", 30)
         > 0.5
         > of.mean("by_damping", "velocity", "mrn", 30),
@@ -118,10 +129,22 @@ def _which_radius(of):
 def _what_decides(of):
     """What the largest and the smallest spheres do, and friction."""
     unequal = of.table[~is_equal(of.table)]
+    ceiling = 1.0 - of.cell("velocity", "mrn", 40).groupby("sample")["largest_share"].mean().mean()
     return {
         "N_s never exceeds one less the share of the largest sphere": bool(
             (unequal["N_s"] <= 1.0 - unequal["largest_share"] + 1e-9).all()
         ),
+        "N_s of MRN is near its ceiling at 40 m/s": of.mean("N_s", "velocity", "mrn", 40) > ceiling - 0.12,
+        "contacts of MRN do not matter within the errors": of.apart("X", "mrn100", "mrn100_tree", 15) < 2.0
+        and of.apart("N_s", "mrn100", "mrn100_tree", 30) < 2.0,
+        "without giants MRN comes apart at 30 m/s all the same": of.mean("X", "velocity", "mrn100_to_800", 30) < 0.15,
+        "springs break MRN more": of.mean("N_s", "spring", "mrn100", 15)
+        > of.mean("N_s", "velocity", "mrn100", 15) + 0.3,
+        "the largest sphere holds 0.25 to 0.40 of the mass": 0.24
+        < of.cell("velocity", "mrn", 30)["largest_share"].min()
+        and of.cell("velocity", "mrn", 30)["largest_share"].max() < 0.41,
+        "with half the step MRN above 0.1 um breaks alike": of.apart("N_s", "mrn100", "mrn100", 30, law="half_step")
+        < 2.0,
         "at 30 m/s N_s of MRN is far below that of equal spheres": of.mean("N_s", "velocity", "mrn100", 30)
         < of.mean("N_s", "velocity", "314nm", 30) - 0.1,
         "without giants MRN holds best": of.mean("X", "velocity", "mrn100_to_800", 15)
@@ -148,27 +171,62 @@ def _what_decides(of):
 def _equal_spheres(of):
     """Fragmentation velocities of equal spheres, and energy."""
     thresholds, table = of.thresholds, of.table
-    ratios = thresholds[(thresholds["friction"] == "velocity") & (thresholds["impact_parameter"] == 0)]
-    ratios = ratios[~ratios["law"].isin(VARIED)]
-    ratios = ratios[ratios["above"] - ratios["below"] <= WIDEST * ratios["velocity"]]
-    ratios = ratios[ratios["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])].dropna(
-        subset="sticking_velocity"
-    )
+    ratios = of_paper(head_on(thresholds))
+    ratios = ratios[(ratios["friction"] == "velocity") & is_close(ratios)].dropna(subset="sticking_velocity")
     at_half = ratios[ratios["damping_time"] == 0.5e-9]
     at_half, ratios = (own["velocity"] / own["sticking_velocity"] for own in (at_half, ratios))
+    base = of.frag("velocity", "570nm")
     printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
     return {
         "energy left rises with the radius": all(
             np.all(np.diff([of.mean("energy_half", "velocity", f"{nm}nm", speed) for nm in (298, 353, 453, 570)]) > 0.0)
             for speed in (10, 15, 20, 30)
         ),
-        "springs lower the fragmentation velocity": of.frag("spring", "570nm") < 0.8 * of.frag("velocity", "570nm"),
+        "energy left tells little among equal spheres": of.mean("energy_half", "velocity", "353nm", 30)
+        - of.mean("energy_half", "velocity", "314nm", 30)
+        < 0.02,
+        "potential over kinetic energy is small in a fast impact only": of.mean(
+            "potential_share", "velocity", "314nm", 30
+        )
+        < 0.01
+        < of.mean("potential_share", "velocity", "570nm", 2),
+        "of equal spheres damping and sliding take alike": 0.6
+        < of.mean("by_sliding", "velocity", "570nm", 30) / of.mean("by_damping", "velocity", "570nm", 30)
+        < 1.1,
+        "springs lower the fragmentation velocity": of.frag("spring", "570nm") < 0.8 * base,
+        "with twice the surface energy v_frag doubles, with half it halves": 1.6 * base
+        < of.frag("velocity_50mJ", "570nm")
+        < 2.2 * base
+        and 0.45 * base < of.frag("velocity_12mJ", "570nm") < 0.65 * base,
+        "second contacts and limits of sliding and twisting hardly move v_frag": all(
+            abs(of.frag(*changed) - base) < 0.12 * base
+            for changed in (
+                ("velocity", "570nm_tree"),
+                ("velocity", "570nm_full"),
+                ("slide_4", "570nm"),
+                ("twist_10", "570nm"),
+            )
+        ),
+        "the limit of rolling moves it": 1.1 * base < of.frag("roll_100", "570nm") < 1.5 * base,
+        "JKR lies between springs and rate friction": of.frag("spring", "570nm") < of.frag("jkr", "570nm") < base,
+        "off centre v_frag falls at the greater impact parameter only": abs(
+            of.threshold("velocity", "570nm", 0.3)["velocity"] - base
+        )
+        < 0.15 * base
+        and of.threshold("velocity", "570nm", 0.6)["velocity"] < 0.75 * base,
+        "with half the step 0.353 um breaks alike": of.apart("N_s", "353nm", "353nm", 15, law="half_step") < 2.0
+        and of.apart("X", "353nm", "353nm", 15, law="half_step") < 2.0,
+        "equal spheres go on parting after 3 us": of.frag("longer", "314nm") < of.frag("velocity", "314nm"),
         "at A = 0.5 ns all are half to three fifths of the printed ones": all(
             0.45 * velocity < of.frag("velocity", name) < 0.65 * velocity
             for name, velocity in printed.items()
             if np.isfinite(of.frag("velocity", name))
         ),
         "v_frag is about 20 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 24.5),
+        "energy of the impact over the contacts grows sevenfold": 5.5
+        < of.threshold("velocity", "298nm")["energy_per_contact"]
+        / of.threshold("velocity", "570nm")["energy_per_contact"]
+        < 8.5,
         "v_frag over v_stick is less for smaller spheres": of.over_stick("velocity", "220nm")
         < of.over_stick("velocity", "260nm")
         < 16.0,

@@ -10,10 +10,11 @@ from ratd.aggregates.particles import read_particles
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.collision.figures.snapshots import PANELS, picture, positions
+from ratd.experiments.collision.figures.snapshots import PANELS, origin_of, picture, positions
 from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
 from ratd.experiments.command import aggregate_options, answer, part_done, several
+from ratd.laws.dmt_with_friction import FRICTIONS, dmt
 from ratd.pictures.collision_page import collision_page
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -54,6 +55,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
     source = source_hash(modules=["ratd.experiments.collision.run"])
     made_with = provenance(source, {"material": material, "unit": unit, **how}, files)
+    touching = dmt() if law == "dmt" else None
     resting = []
 
     def make(start, checkpoint, progress):
@@ -75,9 +77,9 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
             sample=0,
             law=law,
             cluster=file.stem,
-            friction=law,
-            damping_time=0.0,
-            second_contact=0.0,
+            friction=law if touching is None else FRICTIONS[touching.friction],
+            damping_time=0.0 if touching is None else touching.viscous_time,
+            second_contact=np.nan,
             source=source,
         )
 
@@ -118,9 +120,8 @@ def show(path, out):
             figure, page = Path(f"{out}.png"), Path(f"{out}.html")
             times, place, piece = positions(row)
             save(picture(row, times[-1] / (PANELS - 1)), figure)
-            origin = (np.arange(place.shape[1]) >= place.shape[1] // 2).astype(int)
             title = f"{row['cluster'].item()}, {row['velocity'].item():g} m/s"
-            write_text(page, collision_page(times, place, row["radius"].values, piece, origin, title))
+            write_text(page, collision_page(times, place, row["radius"].values, piece, origin_of(piece), title))
             lines += [f"{figure} written", f"{page} written"]
             break
     return lines

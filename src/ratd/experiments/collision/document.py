@@ -4,13 +4,15 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.mrn import free_samples, moment_of_length, sample_length
+from ratd.base.materials import MATERIALS
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.likeness import is_equal
-from ratd.experiments.collision.figures.scaling import VARIED, WIDEST
 from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.experiments.collision.likeness import likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
+from ratd.laws.dmt_with_friction import PERIOD_PARTS, dmt
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
 
@@ -62,8 +64,7 @@ def values(table, thresholds, likeness):
         found[f"collisions {key}"] = f"{row['collisions']:.0f}"
         found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
         stick = row["sticking_velocity"]
-        close = row["above"] - row["below"] <= WIDEST * row["velocity"]
-        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if close else "–"
+        found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if is_close(row) else "–"
         found[f"energy {key}"] = with_error(row["energy_per_contact"], np.nan, 0)
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
@@ -73,7 +74,7 @@ def values(table, thresholds, likeness):
     found |= _by_sample(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
-    found |= _free()
+    found |= _free() | _constants()
     found |= {
         "collisions": str(len(table)),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
@@ -90,11 +91,7 @@ def _calibrated(thresholds):
     the A that were tried v_frag is linear in the logarithms of both; errors are those of the v_frag.
     """
     found = {}
-    own = thresholds[
-        ~thresholds["law"].isin(VARIED)
-        & (thresholds["impact_parameter"] == 0)
-        & np.isclose(thresholds["surface_energy"], 0.025)
-    ].dropna(subset=["velocity"])
+    own = of_same_energy(head_on(thresholds)).dropna(subset=["velocity"])
     for friction, part in own.groupby("friction"):
         curves = {name: one.sort_values("damping_time") for name, one in part.groupby("cluster")}
         known = curves.get("570nm")
@@ -195,16 +192,12 @@ def _late(table):
 
 def _exponents(thresholds):
     """Powers with which v_frag and v_stick go with the radius, and at 0.57 um with the surface energy; A = 0.5 ns."""
-    own = thresholds[
-        (thresholds["friction"] == "velocity")
-        & ~thresholds["law"].isin(VARIED)
-        & (thresholds["impact_parameter"] == 0)
-        & np.isclose(thresholds["damping_time"], 0.5e-9, atol=0.0)
-        & thresholds["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])
-    ].dropna(subset=["velocity", "sticking_velocity"])
+    own = of_paper(head_on(thresholds))
+    own = own[(own["friction"] == "velocity") & np.isclose(own["damping_time"], 0.5e-9, atol=0.0)]
+    own = own.dropna(subset=["velocity", "sticking_velocity"])
     found = {}
     for name, x, part in (
-        ("radius", "radius", own[np.isclose(own["surface_energy"], 0.025)]),
+        ("radius", "radius", of_same_energy(own)),
         ("energy", "surface_energy", own[np.isclose(own["radius"], RADII[-1])]),
     ):
         for word, column in (("", "velocity"), (" stick", "sticking_velocity")):
@@ -222,11 +215,25 @@ def _free():
     return {name: f"{low[k]:.2f} to {high[k]:.2f}" for k, name in enumerate(("free share", "free length"))}
 
 
+def _constants():
+    """``constant NAME``: what silica and its contacts are in these collisions."""
+    silica = MATERIALS["silica"]
+    return {
+        "constant Y": f"{silica.youngs_modulus / 1e9:g} GPa",
+        "constant nu": f"{silica.poisson_number:g}",
+        "constant rho": f"{silica.density:g} kg/m³",
+        "constant gamma": f"{silica.surface_energy * 1e3:g} mJ/m²",
+        "constant xi": f"{silica.critical_rolling_displacement / NM:g} nm",
+        "constant A": f"{dmt().viscous_time * 1e9:g} ns",
+        "constant tau": f"1/{PERIOD_PARTS:.0f}",
+    }
+
+
 def _threshold(row):
     """Text of a fragmentation velocity; where X stays on one side of the limit, on which."""
     if np.isfinite(row["velocity"]):
         # what lies between two velocities far apart is not known by a straight line between them
-        if row["above"] - row["below"] > WIDEST * row["velocity"]:
+        if not is_close(row):
             return f"between {row['below']:g} and {row['above']:g}"
         return with_error(row["velocity"], row["error"], 1)
     return f"not between {row['slowest']:g} and {row['fastest']:g}"

@@ -44,7 +44,16 @@ def fragmentation(run):
     xarray.Dataset
         `N_s` and `X`; along ``piece``, the heaviest first, `piece_mass` [kg], `piece_members`, `piece_largest_radius`
         [m], `piece_of_a` (part of the mass that came with the first cluster). Single spheres are pieces too.
+
+    Raises
+    ------
+    InputError
+        If it is no such run.
     """
+    if not isinstance(run, xr.Dataset) or not {"radius", "piece", "cluster"} <= set(run.variables):
+        raise InputError(
+            f"run is {type(run).__name__} without radius, piece and cluster; it must be what ratd.collide returns."
+        )
     mass = 4.0 / 3.0 * np.pi * run.attrs["density"] * run["radius"].values ** 3
     label = run["piece"].values
     number = label.max() + 1
@@ -158,8 +167,10 @@ def _samples(table):
 def bootstrap_means(table, column, velocities, count, rng):
     """Means of a column at some velocities, drawn anew.
 
-    First samples of the cluster are drawn, with replacement and the same at all velocities, then rotations of each:
-    rotations of one sample are no draws of the law of the radii.
+    Samples of the cluster are drawn with replacement, the same at all velocities, each with the mean of all its
+    rotations: rotations of one sample are no draws of the law of the radii. Of a single sample rotations are drawn.
+    Draws of n differ from their mean by sqrt(1 - 1/n) of what the mean of n is uncertain by, so that all differences
+    are made greater by sqrt(n/(n - 1)).
 
     Parameters
     ----------
@@ -177,26 +188,30 @@ def bootstrap_means(table, column, velocities, count, rng):
     (k, count) float64 array
         NaN where none of the samples drawn has the velocity.
     """
-    value, velocity = (table[name].to_numpy(float) for name in (column, "velocity"))
-    sample = _samples(table)
-    names = np.unique(sample)
-    chosen = rng.integers(len(names), size=(count, len(names)))
-    drawn_means = np.empty((len(velocities), count))
-    for k, one in enumerate(velocities):
-        drawn = np.full((len(names), count, len(names)), np.nan)
-        for row, name in zip(drawn, names, strict=True):
-            own = value[(velocity == one) & (sample == name)]
-            if len(own):
-                row[...] = own[rng.integers(len(own), size=(count, len(names), len(own)))].mean(axis=2)
-        picked = np.take_along_axis(drawn, chosen[None], axis=0)[0]
+    own = pd.DataFrame({"velocity": table["velocity"], "sample": _samples(table), "value": table[column]}).dropna()
+    by_sample = own.groupby(["velocity", "sample"])["value"].mean().unstack()
+    names = len(by_sample.columns)
+    chosen = rng.integers(max(names, 1), size=(count, names))
+    drawn_means = np.full((len(velocities), count), np.nan)
+    for row, velocity in zip(drawn_means, velocities, strict=True):
+        values = by_sample.loc[velocity].to_numpy()
+        if np.isfinite(values).sum() > 1:
+            picked = values[chosen]
+        else:
+            values = own.loc[own["velocity"] == velocity, "value"].to_numpy()
+            picked = values[rng.integers(len(values), size=(count, len(values)))]
         there = np.isfinite(picked)
+        n = np.isfinite(values).sum()
         with np.errstate(invalid="ignore"):
-            drawn_means[k] = np.where(there, picked, 0.0).sum(axis=1) / there.sum(axis=1)
+            means_of_draws = np.where(there, picked, 0.0).sum(axis=1) / there.sum(axis=1)
+        wider = np.sqrt(n / (n - 1)) if n > 1 else 1.0
+        row[:] = np.nanmean(values) + wider * (means_of_draws - np.nanmean(values))
     return drawn_means
 
 
 def _crossing(velocity, mean, limit):
-    """Where values at ascending velocities fall through a limit for the last time; NaN for nowhere."""
+    """Where values at ascending velocities fall through a limit for the last time; NaN for nowhere, values or falls."""
+    velocity, mean = velocity[np.isfinite(mean)], mean[np.isfinite(mean)]
     falls = np.flatnonzero((mean[:-1] >= limit) & (mean[1:] < limit))
     if not len(falls):
         return np.nan

@@ -282,7 +282,7 @@ class Plan:
         return self.settings_of(cell)
 
     def settings_of(self, cell):
-        """Settings of the collisions of one cell."""
+        """Settings of the collisions of one cell; `snapshots`: rotation -> records from one snapshot to the next."""
         pictures = self.config["snapshots"]
         return {
             "law": self.law(cell.law),
@@ -296,13 +296,12 @@ class Plan:
             "timestep": cell.timestep,
             "duration": cell.duration,
             "records": self.config["records"],
-            "snapshot_every": pictures["every"],
-            "snapshot_rotations": [
-                one["rotation"]
+            "snapshots": {
+                str(one["rotation"]): one.get("every", pictures["every"])
                 for one in pictures["runs"]
                 if (one["law"], one["cluster"], one["sample"], one["velocity"])
                 == (cell.law, cell.cluster, cell.sample, cell.velocity)
-            ],
+            },
         }
 
     def work(self, names):
@@ -361,6 +360,10 @@ class Plan:
 
     def snapshot_file(self, one):
         """File of a run with snapshots, named as in `snapshots.runs`."""
+        return RUNS.format(**self.cell_of(one).names)
+
+    def cell_of(self, one):
+        """The cell of a collision of `snapshots.runs`."""
         found = [
             cell
             for cell in self.cells
@@ -370,7 +373,7 @@ class Plan:
         ]
         if not found:
             raise InputError(f"{_WHERE}.snapshots.runs has {one}; allowed: a collision of `runs`")
-        return RUNS.format(**found[0].names)
+        return found[0]
 
     def check_figures(self):
         """Raise InputError unless all that is to be drawn is computed."""

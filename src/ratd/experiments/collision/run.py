@@ -139,6 +139,8 @@ def collide(
     radius = np.concatenate([a.radius, b.radius])
     if timestep is None:
         timestep = step_of(radius, material, law)
+    elif not is_number(timestep) or not timestep > 0.0:
+        raise InputError(f"timestep is {timestep!r}; it must be a number above 0, in s.")
     elif not timestep <= (longest := longest_step(radius, material, law)):
         raise InputError(
             f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."

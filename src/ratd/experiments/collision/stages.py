@@ -142,7 +142,7 @@ def collide_all(job):
     cluster = clusters_of(file)[settings["sample"]]
 
     def make(rotation, checkpoint):
-        every = settings["snapshot_every"] if rotation in settings["snapshot_rotations"] else 0
+        every = settings["snapshots"].get(str(rotation), 0)
         progress = told(job.progress(f"rotation {rotation}"))
         source = job.provenance["code_hash"]
         how = {"snapshot_every": every, "checkpoint": checkpoint, "progress": progress, "source": source}

@@ -4,6 +4,7 @@ Motion of the overlap delta from first touch, by the normal force of the law of 
 """
 
 import math
+from bisect import bisect_left
 from functools import cache
 
 import numpy as np
@@ -99,11 +100,15 @@ def sticking_velocity(a_i, a_j, material, damping_time):
     overlap = equilibrium_overlap(hertz, adhesion)
     scale = math.sqrt(2.0 * breaking_energy(adhesion, overlap) / mass)
     grid = scale * np.geomspace(0.02, 200.0, 24)
-    parting = [parting_velocity(v, a_i, a_j, material, damping_time) for v in grid]
-    apart = np.flatnonzero(np.array(parting) > 0.0)
-    if not len(apart):
+
+    def parts(v):
+        return parting_velocity(v, a_i, a_j, material, damping_time) > 0.0
+
+    if not parts(grid[-1]):
         return math.inf
-    if apart[0] == 0:
+    # how many of the grid stick: the faster two meet, the sooner they part
+    stuck = bisect_left(grid, True, key=parts)
+    if stuck == 0:
         return 0.0
-    low, high = grid[apart[0] - 1], grid[apart[0]]
+    low, high = grid[stuck - 1], grid[stuck]
     return brentq(lambda v: parting_velocity(v, a_i, a_j, material, damping_time) - 1e-6 * scale, low, high, rtol=1e-6)

@@ -7,7 +7,8 @@
 The order is that of `runs` in config/collision_study.yaml, which stands over config/collision.yaml; in an entry one
 rotation of all its cells comes before the next. Each collision becomes a row of a small table in docs/collision/data, a
 file a law and a cluster. A row that is there is never computed again, also not with other source: it says itself which
-source it is of. A killed collision goes on from its checkpoint.
+source it is of. A killed collision goes on from its checkpoint. The two collisions of `snapshots.runs` come first, with
+their snapshots, each in a file of its own.
 """
 
 import sys
@@ -20,12 +21,12 @@ from ratd.experiments.collision.stages import built, collided, law_from
 from ratd.pipeline.provenance import settings_hash, source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 
-__all__ = ["CONFIG", "DATA", "main", "tasks"]
+__all__ = ["CONFIG", "DATA", "PICTURES", "main", "tasks"]
 
 CONFIG = ("config/config.yaml", "config/collision.yaml", "config/collision_study.yaml")
 DATA = "docs/collision/data"
-PICTURES = "pictures"
-"""Folder in it of the collisions with snapshots."""
+PICTURES = ("pictures/figure3.nc", "pictures/figure4.nc")
+"""Files in it of the collisions with snapshots."""
 _clusters = {}
 _KEY = ("sample", "velocity", "impact_parameter", "seed")
 
@@ -45,21 +46,27 @@ def tasks(plan, data):
     """
     tables = {pair: _table(plan, data, *pair) for pair in plan.pairs()}
     source = source_hash(modules=["ratd.experiments.collision.stages"])
+    wanted = []
+    for name, one in zip(PICTURES, plan.pictures, strict=False):
+        cell, rotation = plan.cell_of(one), one["rotation"]
+        every = plan.settings_of(cell)["snapshots"][str(rotation)]
+        wanted.append((_table(plan, data, cell.law, cell.cluster, name), cell, rotation, every))
+    wanted += [(tables[cell.law, cell.cluster], cell, rotation, 0) for cell, rotation in plan.queue()]
     return [
         Task(
-            tables[cell.law, cell.cluster],
+            table,
             key(cell.sample, cell.velocity, cell.impact_parameter, rotation),
-            partial(_collision, plan, cell, rotation, source),
+            partial(_collision, plan, cell, rotation, source, every),
         )
-        for cell, rotation in plan.queue()
+        for table, cell, rotation, every in wanted
     ]
 
 
-def _table(plan, data, law, cluster):
-    """The table of a law and a cluster."""
+def _table(plan, data, law, cluster, name=None):
+    """The table of a law and a cluster, in a file of that name when none is given."""
     material = plan.material_of(law)
     settings = {"law": plan.law(law), "cluster": plan.cluster(material, cluster)}
-    return Table(Path(data, law, f"{cluster}.nc"), "collisions", _KEY, material, settings)
+    return Table(Path(data, name or f"{law}/{cluster}.nc"), "collisions", _KEY, material, settings)
 
 
 def _at_rest(cluster, law, sample):
@@ -70,12 +77,12 @@ def _at_rest(cluster, law, sample):
     return _clusters[name]
 
 
-def _collision(plan, cell, rotation, source):
+def _collision(plan, cell, rotation, source, snapshot_every):
     settings = plan.settings_of(cell)
     own = plan.cluster(plan.material_of(cell.law), cell.cluster)
     cluster = _at_rest(own, settings["law"], cell.sample)
-    checkpoint = Path(plan.results, "checkpoints", f"{settings_hash(settings)}_{rotation}.npz")
-    row = collided(cluster, settings, rotation, checkpoint=checkpoint, source=source)
+    checkpoint = Path(plan.results, "checkpoints", f"{settings_hash(settings)}_{rotation}_{snapshot_every}.npz")
+    row = collided(cluster, settings, rotation, snapshot_every=snapshot_every, checkpoint=checkpoint, source=source)
     checkpoint.unlink(missing_ok=True)
     return row, (
         f"{cell.law} {cell.cluster} sample {cell.sample} {cell.velocity:g} m/s rotation {rotation}: "

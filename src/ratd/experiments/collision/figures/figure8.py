@@ -47,8 +47,12 @@ def figure8(table, law, mrn):
         )
         same = own[own["velocity"] == velocity]
         if len(same):
-            axes.axhline(mean_and_error(same, "energy_half")[0], color=colour, lw=0.8, ls=(0, (4, 2)))
-    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=f"level: {cluster_text(mrn)}")
+            mean, error = mean_and_error(same, "energy_half")
+            axes.axhline(mean, color=colour, lw=0.8, ls=(0, (4, 2)))
+            # the errors side by side, to the right of all radii
+            at = equal["largest_radius"].max() * 1e6 * (1.05 + 0.018 * k)
+            axes.errorbar(at, mean, np.nan_to_num(error), color=colour, marker="D", ms=3, capsize=1.5, ls="none")
+    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), marker="D", ms=3, label=f"level: {cluster_text(mrn)}")
     axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))
     figure.legend(loc="outside lower center", ncols=3)
     return figure

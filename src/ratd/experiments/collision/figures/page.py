@@ -1,8 +1,6 @@
 """The page on which a collision is turned and stepped through."""
 
-import numpy as np
-
-from ratd.experiments.collision.figures.snapshots import positions, row_of
+from ratd.experiments.collision.figures.snapshots import origin_of, positions, row_of
 from ratd.pictures.collision_page import collision_page
 
 __all__ = ["page"]
@@ -12,7 +10,5 @@ def page(files, settings, say):
     """The page of a job of the pipeline, from the file with the run and its settings."""
     row = row_of(files["runs"], settings["rotation"])
     time, place, piece = positions(row)
-    n = place.shape[1]
     title = f"{row['cluster'].item()}, {row['velocity'].item():g} m/s, rotation {row['seed'].item()}"
-    origin = (np.arange(n) >= n // 2).astype(int)
-    return {"page": collision_page(time, place, row["radius"].values, piece, origin, title)}
+    return {"page": collision_page(time, place, row["radius"].values, piece, origin_of(piece), title)}

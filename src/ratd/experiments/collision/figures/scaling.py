@@ -4,13 +4,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ratd.experiments.collision.figures.look import colour_of, radius_label
+from ratd.experiments.collision.thresholds import head_on, is_close
 from ratd.pictures.style import ONE_COLUMN, empty, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
-VARIED = ("longer", "half_step", "slide_4", "twist_10", "roll_100")
-"""Laws of the study in which what is changed is no number of two spheres that meet head-on."""
-WIDEST = 0.35
-"""Fragmentation velocities are shown where the velocities on both sides are no farther apart than this part of them."""
 RATIO = 35.0
 """v_frag/v_stick that the printed velocities have at A = 0.5 ns (34 to 36)."""
 FACES = {"velocity": None, "spring": "white"}
@@ -34,13 +31,8 @@ def scaling(thresholds):
     -------
     matplotlib.figure.Figure
     """
-    own = thresholds[
-        (thresholds["impact_parameter"] == 0)
-        & thresholds["sticking_velocity"].notna()
-        & (thresholds["above"] - thresholds["below"] <= WIDEST * thresholds["velocity"])
-        & thresholds["friction"].isin(FACES)
-        & ~thresholds["law"].isin(VARIED)
-    ]
+    own = head_on(thresholds)
+    own = own[own["sticking_velocity"].notna() & is_close(own) & own["friction"].isin(FACES)]
     figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, "Clusters and pairs of their spheres")
     axes = figure.subplots()
     if not len(own):

@@ -28,6 +28,17 @@ def positions(row):
     return row["snapshot_time"].values, places, row["snapshot_piece"].values.reshape(-1, n)
 
 
+def origin_of(piece):
+    """The cluster that each sphere came with, 0 or 1, (n,) int64: before they meet each of the two is one piece.
+
+    Parameters
+    ----------
+    piece : (k, n) int array
+        Of `positions`.
+    """
+    return (piece[0] != piece[0, 0]).astype(np.int64)
+
+
 def size_scale(radius):
     """Scale of the colours of radii [m], matplotlib.colors.LogNorm."""
     low, high = radius.min(), radius.max()
