@@ -71,8 +71,29 @@ for name in page.FIGURES:
             "../scripts/figure.py"
 
 
+rule study_page:
+    input:
+        **page.figure_input("figure4"),
+    output:
+        page=page.PAGE,
+    log:
+        "results/collision_study/logs/page.log",
+    benchmark:
+        "results/collision_study/benchmarks/page.tsv"
+    conda:
+        "../envs/ratd.yaml"
+    params:
+        task=task("analyse", "ratd.experiments.collision.figures.page:page"),
+        settings={"rotation": page.figure_settings("figure4")["rotation"]},
+    message:
+        "Make the page of a collision of the document"
+    script:
+        "../scripts/analyse.py"
+
+
 rule collision_document:
     input:
+        page.PAGE,
         [f"docs/collision/{name}.png" for name in page.FIGURES],
         table=page.TABLES.format(name="collision_table"),
         thresholds=page.TABLES.format(name="collision_thresholds"),

@@ -51,7 +51,8 @@ class _Found:
         """By how many standard errors the means of two clusters differ, the other under another law if wanted."""
         parts = self.cell("velocity", cluster, velocity), self.cell(law, other, velocity)
         (one, error), (two, error_two) = (mean_and_error(part, column) for part in parts)
-        return abs(one - two) / np.hypot(error, error_two)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.abs(one - two) / np.hypot(error, error_two)
 
     def threshold(self, law, cluster, impact_parameter=0.0):
         """Row of a fragmentation velocity."""

@@ -2,18 +2,30 @@
 
 from pathlib import Path
 
-__all__ = ["DATA", "FIGURES", "SAMPLES", "TABLES", "figure_input", "figure_module", "figure_settings", "run_files"]
+__all__ = [
+    "DATA",
+    "FIGURES",
+    "PAGE",
+    "SAMPLES",
+    "TABLES",
+    "figure_input",
+    "figure_module",
+    "figure_settings",
+    "run_files",
+]
 
 DATA = "docs/collision/data"
 TABLES = "results/collision_study/{name}.nc"
 SAMPLES = "results/collision_study/samples.nc"
+PAGE = "docs/collision/collision.html"
+"""The collision of figure 4, to be turned and stepped through in a browser."""
 _SHOWN = {"law": "velocity", "mrn": "mrn", "twin": "314nm", "cut": "mrn100"}
 """`cut` is MRN without its smallest spheres."""
 FIGURES = {
     "figure1": ("figure1", "built", {}),
     "figure2": ("figure2", "built", {}),
-    "figure3": ("snapshots", "picture", {"rotation": 0, "spacing": 1.0e-7}),
-    "figure4": ("snapshots", "picture", {"rotation": 0, "spacing": 1.5e-7}),
+    "figure3": ("snapshots", "picture", {"rotation": 1, "spacing": 1.0e-7}),
+    "figure4": ("snapshots", "picture", {"rotation": 1, "spacing": 1.5e-7}),
     "figure5": ("figure5", "table", _SHOWN),
     "figure6": ("figure6", "table", _SHOWN),
     "figure7": ("figure7", "runs", _SHOWN),

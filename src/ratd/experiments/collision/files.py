@@ -87,7 +87,6 @@ ROW_VALUES = {
     "timestep": ("s", "time step"),
     "duration": ("s", "duration"),
     "damping_time": ("s", "A of the normal damping of DMT, 0 for another law"),
-    "second_contact": ("1", "part of the spheres that rolled to a second contact when the cluster was built"),
     "mass": ("kg", "mass 2 M of both clusters"),
     "impact_energy": ("J", "E_0, kinetic energy at the start"),
     "N_s": ("1", "N_s at the end, Eq. 9"),
@@ -100,6 +99,10 @@ ROW_VALUES = {
     "single_mass": ("kg", "mass of all single spheres at the end"),
     "balance": ("1", "greatest residual of the balance of energy over E_0"),
 }
+UNKNOWN_OF_FILES = {
+    "second_contact": ("1", "part of the spheres that rolled to a second contact when the cluster was built")
+}
+"""NaN where the cluster was not built here."""
 ROW_NUMBERS = {
     "seed": ("1", "seed of the rotations"),
     "sample": ("1", "number of the sample of radii and of the cluster"),
@@ -125,6 +128,7 @@ register(
             **row_sizes(("record", "piece", "snapshot", "snapshot_monomer", "monomer")),
             **over((ROW,), ROW_NUMBERS, "i8"),
             **over((ROW,), ROW_VALUES),
+            **over((ROW,), UNKNOWN_OF_FILES, nan=True),
             **{name: Variable((ROW,), "str", "", meaning) for name, meaning in ROW_WORDS.items()},
             **over(("record",), SERIES),
             **over(
