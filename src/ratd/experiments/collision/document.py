@@ -71,7 +71,7 @@ def values(table, thresholds, likeness):
         found[f"radius {key}"], found[f"q {key}"] = _alike(row)
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
-    found |= _by_sample(table, "velocity", "mrn")
+    found |= _by_sample(table, "velocity", "mrn") | _shorter(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
     found |= _free() | _constants()
@@ -187,6 +187,20 @@ def _late(table):
     for (law, cluster), part in central.groupby(["law", "cluster"]):
         moved = np.abs(means(part, "X")[1] - means(part, "X_late")[1])
         found[f"late X {law} {cluster}"] = f"{moved.max():.2f}"
+    return found
+
+
+def _shorter(table, law, cluster):
+    """``shorter X LAW CLUSTER``: what rotations with the shortest step have more than others of their cells; ``n``."""
+    own = table[(table["law"] == law) & (table["cluster"] == cluster) & (table["impact_parameter"] == 0)]
+    short = np.isclose(own["timestep"], own["timestep"].min(), atol=0.0)
+    cell = ["sample", "velocity"]
+    found = {}
+    for column in ("X", "N_s"):
+        more = own[short].groupby(cell)[column].mean() - own[~short].groupby(cell)[column].mean()
+        more = more.dropna()
+        found[f"shorter {column} {law} {cluster}"] = with_error(more.mean(), more.std(ddof=1) / np.sqrt(len(more)))
+        found[f"shorter n {law} {cluster}"] = str(len(more))
     return found
 
 
