@@ -12,7 +12,6 @@ from ratd.base.statistics import (
     median_of,
     quantiles,
     rank_correlation,
-    rank_correlation_error,
     slope_error,
     slope_of,
     weighted_line,
@@ -152,15 +151,6 @@ def test_rank_correlation_is_that_of_spearman():
         y = share * x + noise
         assert rank_correlation(x, y) == pytest.approx(spearmanr(x, y).statistic, abs=1e-12)
     assert np.isnan(rank_correlation([1.0], [2.0]))
-
-
-@pytest.mark.parametrize(("linked", "n"), [(0.0, 30), (0.6, 60), (0.9, 40)])
-def test_error_of_a_rank_correlation_is_the_scatter_of_many(linked, n):
-    rng = np.random.default_rng(8)
-    x, own = rng.normal(size=(2, 4000, n))
-    found = [rank_correlation(*both) for both in zip(x, linked * x + np.sqrt(1 - linked**2) * own, strict=True)]
-    assert rank_correlation_error(np.mean(found), n) == pytest.approx(np.std(found), rel=0.1)
-    assert np.isnan(rank_correlation_error([0.5, 0.5], [3, 2])).all()
 
 
 def test_binomial_intervals_of_wilson():

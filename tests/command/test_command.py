@@ -13,8 +13,8 @@ import ratd
 from files import grains_file, make_grain
 from ratd.aggregates.particles import write_particles
 from ratd.command import COMMANDS, SHOWN, main
-from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.collision.figures.snapshots import origin_of, positions
+from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.compression.command import pressure_at
 from ratd.experiments.compression.files import runs
 from ratd.experiments.spin_up import command, run_files

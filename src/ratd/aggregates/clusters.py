@@ -5,6 +5,7 @@ import numpy as np
 from ratd.aggregates.cluster_growth import join_clusters
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import check_seed, seed_sequence
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.base.units import NM
@@ -79,7 +80,7 @@ def _check_number(n):
 def _check_radius(radius, material):
     if radius is None and material.name in MONOMER_RADIUS:
         return MONOMER_RADIUS[material.name]
-    number = isinstance(radius, int | float | np.number) and np.isfinite(radius) and radius > 0.0
+    number = is_number(radius) and radius > 0.0
     if not number:
         known = ", ".join(MONOMER_RADIUS)
         raise InputError(

@@ -12,6 +12,7 @@ import numpy as np
 
 from ratd.aggregates.ballistic import _turn
 from ratd.aggregates.grain import Grain
+from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.materials import get_material
@@ -101,11 +102,11 @@ def _checked(radii, radius, second_contact, seed):
     wrong = np.flatnonzero(~(np.isfinite(radii) & (radii > 0.0)))
     if len(wrong):
         raise InputError(f"radii[{wrong[0]}] is {radii[wrong[0]]:g}; they must be at least two numbers above 0, in m.")
-    if not (isinstance(radius, int | float | np.number) and np.isfinite(radius) and radius > 0.0):
+    if not (is_number(radius) and radius > 0.0):
         raise InputError(f"radius is {radius!r}; it must be a number above 0, in m.")
-    if not (isinstance(second_contact, int | float | np.number) and 0.0 <= second_contact <= 1.0):
+    if not (is_number(second_contact) and 0.0 <= second_contact <= 1.0):
         raise InputError(f"second_contact is {second_contact!r}; it must be a number from 0 to 1.")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+    if not is_whole(seed) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
     largest, second = np.sort(radii)[::-1][:2]
     if largest + second > radius:

@@ -16,7 +16,6 @@ __all__ = [
     "median_of",
     "quantiles",
     "rank_correlation",
-    "rank_correlation_error",
     "slope_error",
     "slope_of",
     "weighted_line",
@@ -191,26 +190,6 @@ def rank_correlation(x, y):
         return np.nan
     ranks = [np.argsort(np.argsort(values)) - 0.5 * (n - 1) for values in (x, y)]
     return float(np.dot(*ranks) / np.dot(ranks[0], ranks[0]))
-
-
-def rank_correlation_error(correlation, n):
-    """Standard error of Spearman's correlation.
-
-    Parameters
-    ----------
-    correlation : float or array_like
-        As from `rank_correlation`.
-    n : int or array_like
-        Number of pairs of values.
-
-    Returns
-    -------
-    float or numpy.ndarray
-        (1 - r^2) sqrt((1 + r^2/2)/(n - 3)), Bonett & Wright (2000, Psychometrika 65, 23) for Fisher's z, brought back
-        to r; NaN for fewer than four pairs.
-    """
-    square, n = np.square(correlation), np.asarray(n, dtype=float)
-    return (1.0 - square) * np.sqrt((1.0 + 0.5 * square) / np.where(n > 3, n - 3.0, np.nan))
 
 
 def jackknife_error(left_out):

@@ -19,7 +19,7 @@ ended(contact, at)
 energies(contact, at)
     Potential energies [J]: normal, sliding, rolling, twisting.
 damping_coefficient(contact, at)
-    Damping coefficient [kg/s] by which the implicit damping is weighted.
+    Damping coefficient [kg/s] by which the implicit damping is weighted; for DMT over sqrt(overlap), [kg/(s m^0.5)].
 damping_now(contact, at)
     Damping coefficient [kg/s] of the contact as it is.
 contact_radius(contact, at)

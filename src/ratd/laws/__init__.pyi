@@ -5,7 +5,7 @@ from typing import Any, Literal
 def dmt(
     *,
     viscous_time: float = 5e-10,
-    friction: Literal["velocity", "spring"] = "velocity",
+    friction: Literal["none", "velocity", "spring"] = "velocity",
     friction_time: float = 0.0,
     sliding_limit: float = 1.0,
     rolling_limit: float = 1.0,
@@ -16,7 +16,7 @@ def jkr(
     normal_force: Literal["JKR", "DMT"] = "JKR",
     damping: Literal["viscoelastic", "constant", "none"] = "viscoelastic",
     constant_damping: float = 0.01,
-    friction: str = "springs",
+    friction: Literal["springs", "none"] = "springs",
     sliding_stiffness: float = 1.0,
     sliding_limit: float = 1.0,
     twisting_stiffness: float = 1.0,

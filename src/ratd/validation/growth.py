@@ -49,8 +49,6 @@ EXPECTED_POROSITY = {
     ("BAM2", 32): 0.46, ("BAM2", 128): 0.55, ("BAM2", 256): 0.58, ("BAM2", 512): 0.61,
 }  # fmt: skip
 """Porosities of an independent generator, which migrates to the nearest place, each +-0.01."""
-EXPECTED_CONTACTS = {"BA": (1, 1), "BAM1": (2, 3), "BAM2": (3, 6)}
-"""N_con = p N - q without accidental contacts."""
 
 
 def arrival(radius, material, seed):

@@ -12,6 +12,7 @@ from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import DT, VX
+from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, monomer_rows
 from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
 from ratd.experiments.spin_up import how, records
@@ -280,6 +281,8 @@ def test_rounds_of_the_relaxation_get_longer():
         ({"snapshot_every": -1}, "snapshot_every is -1"),
         ({"drive": "free"}, "drive is 'free'"),
         ({"epsilon": -1.0}, "epsilon is -1.0"),
+        ({"coriolis": "exact"}, "coriolis is for a spin-up that does not wait"),
+        ({"stretch": 1e-14, "integrator": leapfrog()}, "stretch is given beside an integrator"),
     ],
 )
 def test_bad_arguments_are_refused_in_one_sentence(grain, settings, words):

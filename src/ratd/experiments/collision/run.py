@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_number
+from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.laws import balance_of, contacts_of, longest_step, step_of
@@ -202,7 +202,7 @@ def _check(a, b, velocity, impact_parameter, seed, gap):
         raise InputError(f"velocity is {velocity!r}; it must be a number above 0, in m/s.")
     if not is_number(impact_parameter) or not 0.0 <= impact_parameter < 1.0:
         raise InputError(f"impact_parameter is {impact_parameter!r}; it must be a number from 0 to below 1.")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+    if not is_whole(seed) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
     if not is_number(gap) or not gap > 0.0:
         raise InputError(

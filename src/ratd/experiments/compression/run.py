@@ -8,6 +8,7 @@ import numpy as np
 
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.strength import rolling_pressure
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.engine import checkpoint as checkpoints
@@ -233,7 +234,7 @@ def attributes(cluster):
 
 
 def _positive(name, value):
-    if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
+    if not (is_number(value) and value > 0.0):
         raise InputError(f"{name} is {value!r}; it must be a number above 0.")
     return float(value)
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
@@ -70,7 +70,7 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
         raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
     for name in ("longest", "displacement", "until_phi"):
         value = getattr(long_steps, name)
-        if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value > 0.0):
+        if not (is_number(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
     natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
     displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)

@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 
 from ratd.aggregates.grain import Grain
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import Material
 from ratd.drives.squeezing import squeezing
@@ -94,7 +95,7 @@ def stretch(
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
     if isinstance(compressed, Grain) != (box_length is not None):
         raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
-    if not (isinstance(strain_rate, int | float | np.number) and np.isfinite(strain_rate) and strain_rate > 0.0):
+    if not (is_number(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = law_of(law, compression_law)
     if long_steps is not None:

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
-from ratd.base.materials import Material
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
 from ratd.experiments.compression.grow import grown
@@ -237,8 +236,3 @@ def snapshots(files, settings, say):
     table["radius"] = ("monomer", run["radius"].values)
     say(f"snapshots at phi = {', '.join(f'{phi:.3g}' for phi in table['phi'].values)}")
     return {"compression_snapshots": table}
-
-
-def material_from(table):
-    """Material of a table of a set."""
-    return Material(table.attrs["material"], **{name: table[name].item() for name in MATERIAL})

@@ -94,10 +94,21 @@ def how_to_turn(
             "integrator is semi-implicit and the spin-up does not wait (drive literal, epsilon or "
             "angular_acceleration); that step is right only while the grain is quiet."
         )
+    waits = drive != "literal" and not paced
+    if stretch is not None and integrator is not None and not isinstance(integrator, SemiImplicit):
+        raise InputError(
+            "stretch is given beside an integrator that is not semi-implicit; short steps stretch no contact by so "
+            "much, and nothing is held back by it: leave it out."
+        )
+    if coriolis is not None and waits:
+        raise InputError(
+            "coriolis is for a spin-up that does not wait (drive literal, epsilon or angular_acceleration); where it "
+            "waits, next to nothing moves in the turning frame: leave it out."
+        )
     omega_1 = FIRST_LOSS * bound
     numbers = dict.fromkeys(("stretch", "unrest", "pace", "drag", "epsilon", "displacement"), np.nan)
     words = {"drive": drive, "coriolis": "exact", "damping": damping, "timestep_factor": float(timestep_factor)}
-    if drive == "literal" or paced:
+    if not waits:
         if not paced:
             epsilon = EPSILON.get(kind, min(EPSILON.values()))
         motion = fast.rotating(
@@ -125,4 +136,7 @@ def how_to_turn(
     if isinstance(integrator, SemiImplicit):
         numbers["displacement"] = integrator.displacement
         words |= {"integrator": "semi-implicit", "damping": "implicit"}
+    else:
+        # which leapfrog does not tell the drive
+        numbers["stretch"] = np.nan
     return How(motion, integrator, words | numbers)

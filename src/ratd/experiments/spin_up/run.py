@@ -75,8 +75,8 @@ def spin_up(
         What rises: omega, or the angular momentum, from which omega follows (`ratd.drives.quasi_static`); or the
         equations as printed (`ratd.drives.rotating`).
     stretch : float, optional
-        The spin-up slows down as a contact is stretched or pressed in a step, and waits at so much [m]. The smaller,
-        the nearer to the limit of hours; `STRETCH` of `ratd.experiments.spin_up.how` when not given.
+        The spin-up slows down as a contact is stretched or pressed in a semi-implicit step, and waits at so much [m].
+        The smaller, the nearer to the limit of hours; `STRETCH` of `ratd.experiments.spin_up.how` when not given.
     pace, unrest, drag : float
         (d omega/dt)/omega^2 of a grain at rest; q_0, the part of its rotation that the motion of the grain exceeds
         while the spin-up waits; decay of motion in the turning frame over omega.
@@ -86,11 +86,13 @@ def spin_up(
     angular_acceleration : float, optional
         Do not wait: spin up after Eq. 24, with this initial d omega/dt [rad/s2].
     coriolis : {"exact", "explicit"}, optional
-        Treatment of the Coriolis force; by default exact for `prescribed`, explicit for `literal`.
+        Treatment of the Coriolis force where the spin-up does not wait; by default exact for `prescribed`, explicit for
+        `literal`. One that waits adds it as it is.
     timestep_factor : float
         f of dt = f min(t_dis, t_vel), Eq. 31, of the relaxation and of spin-ups that do not wait.
     damping : {"implicit", "explicit"}
-        Treatment of the viscoelastic damping in these. Explicit is stable for small f only.
+        Treatment of the viscoelastic damping in the latter; in the relaxation it is implicit. Explicit is stable for
+        small f only.
     integrator : part, optional
         `ratd.engine.semi_implicit.semi_implicit` with `STEP` for spin-ups that wait, leapfrog for the others.
     law : str or part, optional
