@@ -139,10 +139,10 @@ def test_figures_draw(done, name):
     figure = {
         "figure5": lambda: figure5(table, "velocity"),
         "figure6": lambda: figure6(table, "velocity", "unequal"),
-        "figure7": lambda: figure7(groups_of(paths, *names)),
+        "figure7": lambda: figure7(groups_of(paths, *names), names[0]),
         "figure8": lambda: figure8(table, "velocity", "unequal"),
         "dissipation": lambda: dissipation(table, *names),
-        "masses": lambda: masses(rows_by_cluster(paths, *names)),
+        "masses": lambda: masses(rows_by_cluster(paths, *names), names[0]),
         "scaling": lambda: scaling(threshold_table(table, lambda energy: SILICA, 20).assign(below=9.0, above=10.0)),
     }[name]()
     figure.canvas.draw()

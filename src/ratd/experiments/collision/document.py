@@ -24,6 +24,10 @@ COLUMNS = (
 )  # fmt: skip
 
 
+CEILING_FROM = 35.0
+"""Velocity [m/s] from which on N_s of MRN is near its ceiling."""
+
+
 def with_error(mean, error, digits=None):
     """Such as "0.16 ± 0.03", as many decimals as make two digits of the error; the value alone without an error."""
     if not np.isfinite(mean):
@@ -65,7 +69,8 @@ def values(table, thresholds, likeness):
         found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
         stick = row["sticking_velocity"]
         found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if is_close(row) else "–"
-        found[f"energy {key}"] = with_error(row["energy_per_contact"], np.nan, 0)
+        relative = 2.0 * row["error"] / row["velocity"]
+        found[f"energy {key}"] = f"{row['energy_per_contact']:.2g} ± {relative:.0%}" if is_close(row) else "–"
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
         found[f"radius {key}"], found[f"q {key}"] = _alike(row)
@@ -74,7 +79,7 @@ def values(table, thresholds, likeness):
     found |= _by_sample(table, "velocity", "mrn") | _shorter(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
-    found |= _free() | _constants()
+    found |= _free() | _constants() | _of_same_samples(table) | _recipe(thresholds) | _below_ceiling(table)
     found |= {
         "collisions": str(len(table)),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
@@ -147,6 +152,42 @@ def _with_and_without(table):
             for column in COLUMNS:
                 found[f"both {column} {law} {cluster} {velocity:g}"] = with_error(*mean_and_error(own, column))
     return found
+
+
+def _of_same_samples(table):
+    """Values of MRN above 0.1 um with rate friction, of the samples that another cluster or law has.
+
+    ``beside X velocity mrn100_tree 15`` and ``beside X spring mrn100 15``.
+    """
+    table = table[table["impact_parameter"] == 0]
+    base = table[(table["law"] == "velocity") & (table["cluster"] == "mrn100")]
+    found = {}
+    for law, cluster in (("velocity", "mrn100_tree"), ("spring", "mrn100")):
+        other = table[(table["law"] == law) & (table["cluster"] == cluster)]
+        for velocity, part in base[base["sample"].isin(other["sample"].unique())].groupby("velocity"):
+            for column in ("X", "N_s"):
+                key = f"beside {column} {law} {cluster} {velocity:g}"
+                found[key] = with_error(*mean_and_error(part, column))
+    return found
+
+
+def _recipe(thresholds):
+    """``too low``: by how much of v_frag of MRN that of the recipe's 0.353 um is too low, rate friction."""
+    own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
+    if not {"mrn", "353nm"} <= set(own.index):
+        return {}
+    (true, error), (equal, other) = (own.loc[name, ["velocity", "error"]] for name in ("mrn", "353nm"))
+    ratio = equal / true
+    spread = ratio * np.hypot(error / true, other / equal)
+    return {"too low": f"{100 * (1 - ratio):.0f} ± {100 * spread:.0f} %"}
+
+
+def _below_ceiling(table):
+    """``radius below N_s``: what MRN is like by N_s at the velocities at which it has not reached its ceiling."""
+    own = table[(table["law"] == "velocity") & ((table["cluster"] == "mrn") | is_equal(table))]
+    rows = likeness_table(own[own["velocity"] < CEILING_FROM])
+    rows = rows[(rows["cluster"] == "mrn") & (rows["quantity"] == "N_s")]
+    return {"radius below N_s": _alike(rows.iloc[0])[0]} if len(rows) else {}
 
 
 def _largest(table):

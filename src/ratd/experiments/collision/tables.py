@@ -30,6 +30,9 @@ HALF = 0.5e-6
 """Time [s] at which the energy left is looked at (Fig. 8)."""
 EARLY = 0.6e-6
 """Time [s] at which X and N_s are looked at too: long after the passage of the clusters, and too early all the same."""
+GRID = 0.2
+"""What a fragmentation velocity is uncertain by, over the distance of the two velocities that it lies between: X is no
+straight line there."""
 LATE = 2.0e-6
 """Time [s] at which X is looked at once more: what comes after it says whether pieces still part."""
 REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
@@ -83,7 +86,7 @@ THRESHOLDS = {
     "friction": ("", "friction of DMT, or the law"),
     "radius": ("m", "radius of the spheres, NaN where they differ"),
     "velocity": ("m s-1", "velocity at which the mean X falls through 0.15"),
-    "error": ("m s-1", "its standard error by bootstrap"),
+    "error": ("m s-1", "its standard error, by bootstrap and by the distance of the velocities that were tried"),
     "low": ("m s-1", "16 % of the bootstrap"),
     "high": ("m s-1", "84 % of the bootstrap"),
     "found": ("1", "part of the bootstrap that has a threshold"),
@@ -208,6 +211,7 @@ def threshold_table(table, material_of_energy, samples=2000):
             name: one[name] for name in ("damping_time", "surface_energy", "friction")
         }
         row |= {"radius": radius, **threshold, "slowest": part["velocity"].min(), "fastest": part["velocity"].max()}
+        row["error"] = np.hypot(row["error"], GRID * (row["above"] - row["below"]))
         row |= {"collisions": len(part), "sticking_velocity": np.nan, "energy_per_contact": np.nan}
         if equal:
             material = material_of_energy(one["surface_energy"])

@@ -22,8 +22,8 @@ from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, style
 
 CUT = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
 """How the cluster without its smallest spheres looks."""
-BESIDE = (*SMALLER, *(PRINTED_RADII[quantity][0] for quantity in ("N_s", "X")))
-"""Radii [m] of the equal spheres: two smaller than those of the paper, and the two that it likens MRN to."""
+BESIDE = (*SMALLER, *(PRINTED_RADII[quantity][0] for quantity in ("energy_half", "N_s", "X")))
+"""Radii [m] of the equal spheres: two smaller than those of the paper, and the three that it likens MRN to."""
 
 
 @styled
@@ -70,7 +70,7 @@ def figure6(table, law, mrn, cut=None):
     right.text(0.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
     left.set_ylabel("agglomeration $X$")
     right.set_ylabel("fragmentation $N_\\mathrm{s}$")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=6)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=7)
     return figure
 
 

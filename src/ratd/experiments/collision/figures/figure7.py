@@ -1,47 +1,45 @@
 """Fig. 7: the kinetic energy left against time, of equal spheres and of MRN clusters."""
 
 import numpy as np
-from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import cluster_text, clusters_of
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of
 from ratd.experiments.collision.tables import mean_energy, series_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 
 @styled
-def figure7(groups):
+def figure7(groups, law):
     """Mean kinetic energy over E_0 against time, a panel a cluster, a curve a velocity.
 
     Parameters
     ----------
     groups : dict of str to list
         Name of the cluster -> its collisions, from `ratd.experiments.collision.tables.series_of`.
+    law : str
+        Name of their law in the config.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Kinetic energy left")
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Kinetic energy left, {law_text(law)}")
     panels = figure.subplots(1, len(groups), sharey=True, squeeze=False)[0]
-    velocities = sorted({row["velocity"] for series in groups.values() for row, _ in series})
+    looks = looks_of([[row["velocity"] for row, _ in series] for series in groups.values()])
     longest = max((s["time"].iloc[-1] for series in groups.values() for _, s in series), default=1e-6)
     for axes, (name, series) in zip(panels, groups.items(), strict=True):
         axes.set_title(cluster_text(name), pad=2)
         axes.set_xlabel("time $t$ [µs]")
         if not series:
             empty(axes, "no collisions")
-        for k, velocity in enumerate(velocities):
+        for velocity, look in looks.items():
             own = [one for one in series if one[0]["velocity"] == velocity]
             if own:
                 time, energy = mean_energy(own)
-                colour = colormaps["viridis"](0.9 * k / max(len(velocities) - 1, 1))
-                axes.plot(time * 1e6, energy, color=colour, label=f"{velocity:g} m s$^{{-1}}$")
+                axes.plot(time * 1e6, energy, label=f"{velocity:g} m s$^{{-1}}$", **look)
         axes.set(xlim=(0, longest * 1e6), ylim=(0, 1.02))
     panels[0].set_ylabel("kinetic energy over $E_0$")
-    # a long list of velocities stands once
     handles = {label: h for axes in panels for h, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    order = sorted(handles, key=lambda label: float(label.split()[0]))
-    panels[-1].legend([handles[label] for label in order], order, loc="upper right", ncols=2 if len(order) > 6 else 1)
+    figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
     return figure
 
 
@@ -64,4 +62,5 @@ def groups_of(paths, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure7(groups_of(files["runs"], settings["law"], clusters_of(settings)))
+    law = settings["law"]
+    return figure7(groups_of(files["runs"], law, clusters_of(settings)), law)

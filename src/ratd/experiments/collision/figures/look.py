@@ -19,6 +19,7 @@ __all__ = [
     "collisions_of",
     "colour_of",
     "label_of",
+    "looks_of",
     "law_text",
     "plot_means",
     "radii_of",
@@ -42,6 +43,7 @@ LAWS = {"velocity": "friction by rate", "spring": "friction by springs"}
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
 MARKERS = "osv^P*X<>"
+STYLES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (1, 0.8)))
 SMALLER = (0.22e-6, 0.26e-6)
 """Radii [m] of equal spheres that are smaller than those of the paper."""
 TRIED = (*SMALLER, *RADII)
@@ -114,6 +116,26 @@ def velocity_axis(axes, table):
     axes.set_xlim(0, 1.05 * table["velocity"].max())
 
 
-def sticking_line(axes, limit):
-    """The limit of X below which clusters are said to fragment."""
+def sticking_line(axes, limit, said=True):
+    """The limit of X below which clusters are said to fragment, a level line."""
     axes.axhline(limit, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
+    if said:
+        axes.text(0.3, limit + 0.01, "limit of sticking", color="#555555", va="bottom")
+
+
+def looks_of(velocities, most=4):
+    """Colours and line styles of some velocities, the same in all panels: float -> dict.
+
+    Parameters
+    ----------
+    velocities : list of list of float
+        Of each panel. Those that all have are taken, else all that there are, at most so many.
+    most : int
+    """
+    own = [set(each) for each in velocities if len(each)]
+    every = sorted(set.intersection(*own) or set.union(*own)) if own else []
+    chosen = [every[k] for k in np.unique(np.linspace(0, len(every) - 1, most).round().astype(int))] if every else []
+    return {
+        velocity: {"color": _SCALE(0.85 * k / max(len(chosen) - 1, 1)), "ls": STYLES[k % len(STYLES)]}
+        for k, velocity in enumerate(chosen)
+    }

@@ -1,52 +1,49 @@
 """Beyond the paper: how the mass is spread over the pieces."""
 
 import numpy as np
-from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import cluster_text, clusters_of
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 
-MOST = 5
-"""Velocities that are drawn at most."""
-
 
 @styled
-def masses(groups):
+def masses(groups, law):
     """Part of the mass in pieces of at least some mass, means over the collisions, a panel a cluster.
 
     Parameters
     ----------
     groups : dict of str to list of xarray.Dataset
         Name of the cluster -> rows of files of collisions.
+    law : str
+        Name of their law in the config.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Mass in pieces of at least a mass")
+    figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Mass in pieces of at least a mass, {law_text(law)}")
     panels = figure.subplots(1, len(groups), sharey=True, squeeze=False)[0]
     edges = np.geomspace(1e-4, 1.0, 81)
-    fastest = max((row["velocity"].item() for own in groups.values() for row in own), default=1.0)
+    looks = looks_of([[row["velocity"].item() for row in own] for own in groups.values()])
     for axes, (name, own) in zip(panels, groups.items(), strict=True):
         axes.set_title(cluster_text(name), pad=2)
         axes.set(xscale="log", ylim=(0, 1.02))
         if not own:
             empty(axes, "no collisions")
-        velocities = np.array(sorted({row["velocity"].item() for row in own}))
-        shown = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))] if own else ()
-        for velocity in shown:
+        for velocity, look in looks.items():
             curves = []
             for row in own:
                 if row["velocity"].item() == velocity:
                     part = row["piece_mass"].values / row["mass"].item()
                     curves.append([part[part >= edge].sum() for edge in edges])
-            colour = colormaps["viridis"](0.95 * velocity / fastest)
-            axes.plot(edges, np.mean(curves, axis=0), color=colour, label=f"{velocity:g} m s$^{{-1}}$")
-        axes.legend(loc="lower left")
+            if curves:
+                axes.plot(edges, np.mean(curves, axis=0), label=f"{velocity:g} m s$^{{-1}}$", **look)
+    handles = {label: h for axes in panels for h, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
     panels[0].set_ylabel("part of the mass")
-    figure.supxlabel("mass of a piece over that of both clusters", fontsize="medium")
+    panels[len(panels) // 2].set_xlabel("mass of a piece over that of both clusters")
     return figure
 
 
@@ -63,4 +60,5 @@ def rows_by_cluster(paths, law, clusters):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return masses(rows_by_cluster(files["runs"], settings["law"], clusters_of(settings)))
+    law = settings["law"]
+    return masses(rows_by_cluster(files["runs"], law, clusters_of(settings)), law)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import CLUSTERS, collisions_of, law_text
-from ratd.experiments.collision.fragmentation import means
-from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, new_figure, styled
+from ratd.experiments.collision.fragmentation import STICKING, means
+from ratd.pictures.style import GREY, HIGHLIGHT, TWO_COLUMNS, new_figure, styled
 
 LOOKS = {"velocity": ("#0072B2", "o"), "spring": ("#D55E00", "s")}
 QUANTITIES = {"X": "$X$", "N_s": "$N_\\mathrm{s}$", "N_s_rest": "$N_\\mathrm{s}$ of the rest"}
@@ -30,7 +30,7 @@ def question(table, velocities):
     table = table[(table["impact_parameter"] == 0) & table["law"].isin(LOOKS)]
     names = [name for name in CLUSTERS if (table["cluster"] == name).any()]
     height = (0.13 + 0.045 * len(names)) * len(velocities)
-    figure = new_figure(TWO_COLUMNS, height * TWO_COLUMNS, "What decides")
+    figure = new_figure(TWO_COLUMNS, height * TWO_COLUMNS, "What of an MRN cluster decides")
     panels = figure.subplots(len(velocities), len(QUANTITIES), sharey=True, sharex=True, squeeze=False)
     for row, velocity in zip(panels, velocities, strict=True):
         here = table[np.isclose(table["velocity"], velocity)]
@@ -48,6 +48,8 @@ def question(table, velocities):
                     if quantity == "N_s" and k == 0:
                         for share in own["largest_share"].unique():
                             axes.plot([1 - share] * 2, [place - 0.35, place + 0.35], color=HIGHLIGHT, lw=1.4, zorder=0)
+            if quantity == "X":
+                axes.axvline(STICKING, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
             axes.set(xlim=(-0.04, 1.04), ylim=(-0.6, len(names) - 0.4))
             axes.set_title(f"{text} at {velocity:g} m s$^{{-1}}$", pad=2)
         row[0].set_yticks(range(len(names)), [CLUSTERS[name] for name in names])

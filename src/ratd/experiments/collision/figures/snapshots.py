@@ -14,6 +14,8 @@ from ratd.pipeline.blocks import rows
 
 CAMERA = view_axes((0, -1, 0), (0, 0, 1))
 """Seen from the side, the clusters coming from left and right."""
+PART_SHOWN = 0.995
+"""Part of the spheres that each picture shows at least."""
 PIXELS = 420
 SIZES = colormaps["viridis"]
 PANELS = 6
@@ -68,7 +70,9 @@ def picture(row, spacing):
     figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, title)
     panels = figure.subplots(2, PANELS // 2)
     scale = size_scale(radius)
-    half_width = 1.06 * np.max(np.abs(place[0] @ CAMERA.T)[:, :2] + radius[:, None])
+    # nearly all spheres of all pictures: what flies off fast is not waited for
+    reach = np.max(np.abs(place[wanted] @ CAMERA.T)[..., :2] + radius[:, None], axis=-1)
+    half_width = 1.06 * max(np.quantile(one, PART_SHOWN) for one in (reach[0], *reach))
     for axes, k in zip(panels.ravel(), wanted, strict=True):
         at = place[k] @ CAMERA.T
         view = render(at, radius, SIZES(scale(radius))[:, :3], half_width, PIXELS)
