@@ -30,7 +30,7 @@ def is_close(thresholds):
 
 
 def of_paper(thresholds):
-    """Those of the six radii of the paper, with half of the spheres of two contacts."""
+    """Those of equal spheres of the six radii of the paper, built as the others are (p = 0.5)."""
     return thresholds[thresholds["cluster"].isin([f"{radius / NM:.0f}nm" for radius in RADII])]
 
 

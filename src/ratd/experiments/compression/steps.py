@@ -2,7 +2,6 @@
 
 from typing import NamedTuple
 
-
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.engine.leapfrog import leapfrog

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of, shared_legend
 from ratd.experiments.collision.tables import mean_energy, series_of
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
@@ -38,8 +38,7 @@ def figure7(groups, law):
                 axes.plot(time * 1e6, energy, label=f"{velocity:g} m s$^{{-1}}$", **look)
         axes.set(xlim=(0, longest * 1e6), ylim=(0, 1.02))
     panels[0].set_ylabel("kinetic energy over $E_0$")
-    handles = {label: h for axes in panels for h, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
+    shared_legend(figure, panels)
     return figure
 
 

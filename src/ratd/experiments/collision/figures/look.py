@@ -24,6 +24,7 @@ __all__ = [
     "plot_means",
     "radii_of",
     "radius_label",
+    "shared_legend",
 ]
 
 CLUSTERS = {
@@ -121,6 +122,12 @@ def sticking_line(axes, limit, said=True):
     axes.axhline(limit, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
     if said:
         axes.text(0.3, limit + 0.01, "limit of sticking", color="#555555", va="bottom")
+
+
+def shared_legend(figure, panels):
+    """One legend below all panels, each label once."""
+    handles = {label: h for axes in panels for h, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
 
 
 def looks_of(velocities, most=4):

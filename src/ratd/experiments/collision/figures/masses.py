@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of
+from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of, shared_legend
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -40,8 +40,7 @@ def masses(groups, law):
                     curves.append([part[part >= edge].sum() for edge in edges])
             if curves:
                 axes.plot(edges, np.mean(curves, axis=0), label=f"{velocity:g} m s$^{{-1}}$", **look)
-    handles = {label: h for axes in panels for h, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
+    shared_legend(figure, panels)
     panels[0].set_ylabel("part of the mass")
     panels[len(panels) // 2].set_xlabel("mass of a piece over that of both clusters")
     return figure
