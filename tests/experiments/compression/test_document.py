@@ -9,6 +9,8 @@ from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
 from ratd.experiments.compression.findings import findings
+from ratd.experiments.compression.tables import joined
+from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
 
 TEMPLATE = document.TEMPLATE.read_text(encoding="utf-8")
@@ -68,6 +70,30 @@ def test_missing_data_are_one_sentence(tmp_path):
         document.read_data(tmp_path)
     with pytest.raises(ratd.FileError, match="holds no tables of the compression"):
         document.collect(tmp_path)
+
+
+def test_clusters_that_are_made_later_are_added_to_their_set(tmp_path):
+    whole = io.read(document.DATA / "sets/n_1024.nc", "compression_set")
+    for name, seeds in (("first", [0, 2, 4, 6, 7, 8, 9]), ("later", [5, 1, 3])):
+        part = whole.isel(seed_number=seeds)
+        filled = part["pressure"].notnull().any("seed_number")
+        io.write(tmp_path / name / "compression/n_1024.nc", part.isel(phi_bin=filled.values), "compression_set")
+        document.collect(tmp_path / name, tmp_path / "data")
+    found = io.read(tmp_path / "data/sets/n_1024.nc", "compression_set")
+    assert found["seed"].values.tolist() == list(range(10))
+    for name in whole.variables:
+        assert found[name].values == pytest.approx(whole[name].values, rel=1e-12, nan_ok=True), name
+    # a seed that is there already: the new table takes the place of the old one
+    document.collect(tmp_path / "later", tmp_path / "data")
+    assert io.read(tmp_path / "data/sets/n_1024.nc", "compression_set")["seed"].values.tolist() == [5, 1, 3]
+
+
+def test_tables_of_other_sets_are_not_joined():
+    one, other = (io.read(document.DATA / f"sets/{name}.nc", "compression_set") for name in ("n_1024", "rate_1e-6"))
+    with pytest.raises(ratd.InputError, match="they differ in .*strain_rate"):
+        joined(one, other)
+    with pytest.raises(ratd.InputError, match="both tables have the seed 0"):
+        joined(one, one)
 
 
 def test_the_command_says_how_it_is_used(capsys):

@@ -1,6 +1,6 @@
 """docs/compression.md and its figures, drawn again from the data beside them.
 
-python -m ratd.experiments.compression.document collect RESULTS    take tables from a folder of results
+python -m ratd.experiments.compression.document collect RESULTS    take tables, or new seeds of them, from a folder of results
 python -m ratd.experiments.compression.document redraw             figures and text, in seconds
 """
 
@@ -15,6 +15,7 @@ from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
 from ratd.experiments.compression.findings import findings, spun_up
 from ratd.experiments.compression.plan import load
+from ratd.experiments.compression.tables import joined
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
@@ -34,7 +35,10 @@ PEER = Path("docs/validation/data")
 
 
 def collect(results, data=DATA):
-    """Copy the tables of a folder of results beside the document, those that are finished.
+    """Take the tables of a folder of results beside the document, those that are finished.
+
+    A set that is made in pieces grows: clusters whose seeds are not there yet are added to it. A table that has a seed
+    of the one that is there takes its place.
 
     Parameters
     ----------
@@ -49,7 +53,12 @@ def collect(results, data=DATA):
     for name in names:
         kind = "compression_snapshots" if name == "snapshots.nc" else "compression_set"
         target = data / name if kind == "compression_snapshots" else data / "sets" / name
-        io.read(results / "compression" / name, kind)
+        table = io.read(results / "compression" / name, kind)
+        if kind == "compression_set" and target.is_file():
+            there = io.read(target, kind)
+            if not {*there["seed"].values.tolist()} & {*table["seed"].values.tolist()}:
+                io.write(target, joined(there, table), kind)
+                continue
         with atomic(target) as temporary:
             temporary.write_bytes((results / "compression" / name).read_bytes())
     pulls = sorted(path for path in (results / "tension").rglob("phi_*.nc") if path.is_file())

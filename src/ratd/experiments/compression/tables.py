@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
+from ratd.base.errors import InputError
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
 from ratd.experiments.compression.grow import grown
@@ -17,7 +18,7 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
 
-__all__ = ["BIN", "DISTANCES", "bins", "in_bins", "run_set", "set_of", "snapshots"]
+__all__ = ["BIN", "DISTANCES", "bins", "in_bins", "joined", "run_set", "set_of", "snapshots"]
 
 BIN = 1.04
 """Ratio of the ends of a bin of the filling factor."""
@@ -214,6 +215,54 @@ def run_set(files, settings, say):
     table["mean_square_gyration"], table["mean_square_gyration_error"] = gyration(settings)
     say(f"{len(found)} runs of {table['n_monomers'].item()} monomers")
     return {"compression_set": typed(table)}
+
+
+def joined(one, other):
+    """One table of two of the same set, the seeds of both in their order.
+
+    Parameters
+    ----------
+    one, other : xarray.Dataset
+        Of the kind ``compression_set``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of the same kind.
+
+    Raises
+    ------
+    InputError
+        If the two differ in what all runs of a set share, or have a seed in common.
+    """
+    shared = [name for name in kind_of("compression_set").attributes if one.attrs[name] != other.attrs[name]]
+    for name in (*(n for n in one.variables if not one[n].dims and n != "mean_rolling_energy"), "strain_rate"):
+        if not np.isclose(one[name].values.flat[0], other[name].values.flat[0], rtol=1e-9, atol=0.0):
+            shared.append(name)
+    if shared:
+        raise InputError(f"the tables are of different sets: they differ in {', '.join(shared)}.")
+    both = sorted({*one["seed"].values.tolist()} & {*other["seed"].values.tolist()})
+    if both:
+        raise InputError(f"both tables have the seed {both[0]}; each seed may be in one of them.")
+    parts = [each.assign_coords({PHI: bins(each["phi"].values)}) for each in (one, other)]
+    numbers = np.union1d(parts[0][PHI], parts[1][PHI])
+    most = max(one["snapshot_phi"].values, other["snapshot_phi"].values, key=len)
+    for k, part in enumerate(parts):
+        nearest = [int(np.argmin(np.abs(np.log(most / phi)))) for phi in part["snapshot_phi"].values]
+        parts[k] = part.assign_coords({SNAPSHOT: nearest}).reindex({PHI: numbers, SNAPSHOT: range(len(most))})
+    of_seeds = [name for name in one.variables if SEED in one[name].dims]
+    table = xr.concat([part[of_seeds] for part in parts], SEED).reset_coords(drop=True)
+    table = table.isel({SEED: np.argsort(table["seed"].values)})
+    for name in one.data_vars:
+        if not one[name].dims:
+            table[name] = one[name]
+    n = [each.sizes[SEED] for each in (one, other)]
+    table["mean_rolling_energy"] = np.average([each["mean_rolling_energy"] for each in (one, other)], weights=n)
+    table["phi"] = (PHI, BIN ** (numbers + 0.5))
+    table["snapshot_phi"], table["distance"] = (SNAPSHOT, most), one["distance"]
+    return typed(table.drop_vars([PHI, SNAPSHOT], errors="ignore")).assign_attrs(
+        {name: one.attrs[name] for name in kind_of("compression_set").attributes}
+    )
 
 
 def typed(table):
