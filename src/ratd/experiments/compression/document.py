@@ -1,6 +1,6 @@
 """docs/compression.md and its figures, drawn again from the data beside them.
 
-python -m ratd.experiments.compression.document collect RESULTS    take tables, or new seeds of them, from a folder of results
+python -m ratd.experiments.compression.document collect RESULTS    take tables or new seeds from a folder of results
 python -m ratd.experiments.compression.document redraw             figures and text, in seconds
 """
 
