@@ -46,6 +46,6 @@ def jit(function=None, **options):
     """`numba.njit` with the flags of the package (`ratd.base.parts.FLAGS`) and a cache on disk; a decorator."""
     if function is None:
         return lambda inner: jit(inner, **options)
-    compiled = numba.njit(**FLAGS, **options)(function)
+    compiled = numba.njit(**(FLAGS | options))(function)
     compiled._cache = OwnPartsCache(function)
     return compiled

@@ -1,10 +1,12 @@
 """Shaded pictures of spheres, seen from infinitely far away.
 
-Drawn pixel by pixel with a depth buffer, in NumPy alone: a picture needs no display, no graphics library of the system
+Drawn pixel by pixel with a depth buffer: a picture needs no display, no graphics library of the system
 and no graphics card, and its bytes are the same on every machine.
 """
 
 import numpy as np
+
+from ratd.base.jit import jit
 
 LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
 """Direction towards the light: from the upper left, on the side of the viewer."""
@@ -82,14 +84,7 @@ def _seen(position, radius, centre):
     depth = np.full((len(centre), len(centre)), -np.inf)  # row 0 at the bottom
     owner = np.full(depth.shape, -1)
     bright = np.zeros(depth.shape)
-    for k, ((x, y, z), a) in enumerate(zip(position, radius, strict=True)):
-        columns = slice(*np.searchsorted(centre, [x - a, x + a]))
-        rows = slice(*np.searchsorted(centre, [y - a, y + a]))
-        square = 1.0 - ((centre[columns] - x)[None, :] / a) ** 2 - ((centre[rows] - y)[:, None] / a) ** 2
-        surface = z + a * np.sqrt(np.maximum(square, 0.0))
-        front = (square > 0) & (surface > depth[rows, columns])
-        np.copyto(depth[rows, columns], surface, where=front)
-        np.copyto(owner[rows, columns], k, where=front)
+    _find_nearest(np.ascontiguousarray(position), radius, centre, depth, owner)
     covered = np.nonzero(owner >= 0)
     if len(covered[0]):
         seen, depth = owner[covered], depth[covered]
@@ -100,6 +95,25 @@ def _seen(position, radius, centre):
         near, far = depth.max(), depth.min()
         bright[covered] = shade * (1 - FADE * (near - depth) / max(near - far, np.finfo(float).tiny))
     return owner[::-1], bright[::-1]
+
+
+# nothing fused, so that a pixel is the same on every machine
+@jit(fastmath=False)
+def _find_nearest(position, radius, centre, depth, owner):
+    """Fill in the greatest height in each pixel, and the number of the sphere that has it."""
+    for k in range(len(radius)):
+        x, y, z = position[k]
+        a = radius[k]
+        left, right = np.searchsorted(centre, x - a), np.searchsorted(centre, x + a)
+        for row in range(np.searchsorted(centre, y - a), np.searchsorted(centre, y + a)):
+            above = ((centre[row] - y) / a) ** 2
+            for column in range(left, right):
+                square = 1.0 - ((centre[column] - x) / a) ** 2 - above
+                if square > 0.0:
+                    surface = z + a * np.sqrt(square)
+                    if surface > depth[row, column]:
+                        depth[row, column] = surface
+                        owner[row, column] = k
 
 
 def show(axes, picture, half_width):

@@ -74,13 +74,18 @@ def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
 
 
 def draw_curves(above, below, tables, labels, *, alone=False):
-    """Mean pressures with bands of one standard error, into both panels; thin where a set is not static yet."""
+    """Mean pressures with bands of one standard error, into both panels; thin where a set is not static yet.
+
+    `below` may be None.
+    """
     for k, (table, label) in enumerate(zip(tables, labels, strict=True)):
         mean, error = mean_pressure(table, alone=alone)
         phi = table["phi"].values
         line = phi**3 * table["rolling_pressure"].values[0]
         style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
         for axes, unit in ((above, 1.0), (below, line)):
+            if axes is None:
+                continue
             value = np.where(mean > 0.0, mean, np.nan) / unit
             static = phi > table["static_from"].values[0]
             axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
@@ -110,4 +115,6 @@ def pressures(tables, labels, title, *, alone=False):
     figure, above, below = two_panels(title)
     draw_curves(above, below, tables, labels, alone=alone)
     draw_line(above, tables[0])
+    # little of what is not static: there inertia is seen, and chance
+    above.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))
     return finish(figure, above, below)

@@ -14,7 +14,7 @@ UM = 1e-6
 
 @styled
 def figure3(snapshots):
-    """Monomers at some filling factors, seen along z, light; in orange the eight copies beside; the box black.
+    """Monomers at some filling factors, seen along z, light; in orange its copies as far as seen; the box black.
 
     All panels have one scale, that of the first box.
     """
@@ -26,12 +26,16 @@ def figure3(snapshots):
         length = snapshots["box_length"].values[k]
         own = np.stack([snapshots[axis].values[k] for axis in "xyz"], axis=1)
         position, colour = [], []
-        for nx in (-1, 0, 1):
-            for ny in (-1, 0, 1):
+        # a box more than what is seen, since arms reach out of theirs
+        reach = range(-int(half / length + 1.5), int(half / length + 1.5) + 1)
+        for nx in reach:
+            for ny in reach:
                 position.append(own + length * np.array([nx, ny, 0]))
                 colour.append(np.tile(to_rgb(HIGHLIGHT if nx or ny else OWN), (len(own), 1)))
-        radius = np.tile(snapshots["radius"].values, 9)
-        picture = render(np.concatenate(position), radius, np.concatenate(colour), half, pixels=400)
+        radius = np.tile(snapshots["radius"].values, len(reach) ** 2)
+        position, colour = np.concatenate(position), np.concatenate(colour)
+        seen = (np.abs(position[:, :2]) < half + radius[:, None]).all(axis=1)
+        picture = render(position[seen], radius[seen], colour[seen], half, pixels=400)
         edge = half / UM
         axes.imshow(picture, extent=(-edge, edge, -edge, edge), interpolation="antialiased")
         x = 0.5 * length / UM
@@ -42,7 +46,10 @@ def figure3(snapshots):
         if k == 0:
             bar = scale_length(0.5 * edge)
             axes.plot([0.95 * edge - bar, 0.95 * edge], [-0.95 * edge] * 2, color="black", lw=1.6)
-            axes.text(0.95 * edge - 0.5 * bar, -0.92 * edge, rf"{bar:g} $\mu$m", ha="center", va="bottom")
+            axes.text(
+                0.95 * edge - 0.5 * bar, -0.9 * edge, rf"{bar:g} $\mu$m", ha="center", va="bottom",
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},
+            )  # fmt: skip
     return figure
 
 
