@@ -8,6 +8,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine import checkpoint as checkpoints
 from ratd.experiments import evolve as module
+from ratd.experiments import intervals
 from ratd.experiments.evolve import RECORDS, evolve
 from ratd.geometry.box import periodic
 from ratd.laws import dmt, jkr
@@ -125,8 +126,8 @@ def test_output_is_in_the_order_of_the_input(whole):
 
 def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypatch):
     path = tmp_path / "run.npz"
-    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
-    monkeypatch.setattr(module, "PROGRESS_INTERVAL", -1.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
 
     def kill(done, to_go, row):
         if done > 0.4:
@@ -151,7 +152,7 @@ def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypa
 
 
 def test_velocity_and_spin_of_the_same_numbers_are_told_apart(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     options = GOOD | {"checkpoint": tmp_path / "run.npz", "balance": None}
     motion = np.array([[0.0, 0, 1.0], [0, 0, -1.0]])
     moving = evolve(**options, velocity=motion)
@@ -220,8 +221,8 @@ def test_a_long_record_is_made_in_calls(tmp_path, monkeypatch):
     pair = [[0, 0, 0], [0, 0, 39.9e-9]], [20e-9] * 2
     monkeypatch.setattr(module, "CALL", 100)
     whole = evolve(*pair, **how)
-    monkeypatch.setattr(module, "CHECKPOINT_INTERVAL", 0.0)
-    monkeypatch.setattr(module, "PROGRESS_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
     parts = []
 
     def stop(part, to_go, row):

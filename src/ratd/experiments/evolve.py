@@ -1,10 +1,10 @@
 """Any set of spheres, moved by any law in open space or in a box; energies, momenta and pieces against time."""
 
-import time as clock
-
 import numpy as np
 import xarray as xr
 
+from ratd.experiments import intervals
+from ratd.experiments.intervals import Interval
 from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
@@ -28,9 +28,6 @@ AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
 DEEPEST = 0.5
 """Two spheres may overlap at the start by at most this part of the smaller radius."""
-CHECKPOINT_INTERVAL = 60.0
-PROGRESS_INTERVAL = 2.0
-"""Wall time [s] between two checkpoints, and two calls of `progress`."""
 
 # name -> dimensions after `record`, units, meaning
 RECORDS = {
@@ -164,7 +161,7 @@ def evolve(
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
-    start = saved = told = clock.monotonic()
+    to_save, to_tell = Interval(intervals.CHECKPOINT), Interval(intervals.PROGRESS)
     begun = state.scalar[TIME]
     while len(rows) <= records:
         goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
@@ -175,14 +172,11 @@ def evolve(
                 pictures.append(_picture(state))
             if balance is not None and not drag:
                 _check_balance(rows, balance)
-        now = clock.monotonic()
-        if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
+        if checkpoint is not None and to_save.passed():
             checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
-            saved = now
-        if progress is not None and now - told > PROGRESS_INTERVAL:
+        if progress is not None and to_tell.passed():
             time = state.scalar[TIME]
-            progress(time / duration, (now - start) * (duration - time) / (time - begun), rows[-1])
-            told = now
+            progress(time / duration, to_tell.elapsed() * (duration - time) / (time - begun), rows[-1])
     return _dataset(state, rows, pictures, law, box)
 
 

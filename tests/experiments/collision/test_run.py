@@ -7,7 +7,7 @@ import xarray as xr
 import ratd
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
-from ratd.experiments import evolve as evolve_module
+from ratd.experiments import intervals
 from ratd.experiments.collision.laws import balance_of, longest_step, step_of
 from ratd.experiments.collision.run import at_rest, collide
 from ratd.experiments.collision.sticking import breaking_energy_of, parting_velocity, sticking_velocity
@@ -44,8 +44,8 @@ def test_what_a_run_holds(run):
 
 
 def test_a_run_goes_on_after_a_kill_with_the_same_bits(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(evolve_module, "CHECKPOINT_INTERVAL", 0.0)
-    monkeypatch.setattr(evolve_module, "PROGRESS_INTERVAL", -1.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
     told = []
 
     def kill(time, pieces, energy_left, to_go):

@@ -5,7 +5,7 @@ import pytest
 
 import ratd
 from ratd.aggregates.strength import rolling_pressure
-from ratd.experiments.compression import strain as strain_module
+from ratd.experiments import intervals
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, static_from, time_unit
 from ratd.experiments.compression.strain import strain_dataset
@@ -67,8 +67,8 @@ def test_an_unbalanced_run_ends_with_an_error(cluster, monkeypatch):
 
 
 def test_a_killed_run_goes_on_with_the_same_bits(cluster, run, tmp_path, monkeypatch):
-    monkeypatch.setattr(strain_module, "CHECKPOINT_INTERVAL", 0.0)
-    monkeypatch.setattr(strain_module, "PROGRESS_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
     seen = []
 
     def stop(phi, pressure, seconds_to_go):

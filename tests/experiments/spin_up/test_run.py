@@ -14,8 +14,9 @@ from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import DT, VX
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, monomer_rows
+from ratd.experiments import intervals
 from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
-from ratd.experiments.spin_up import how, records
+from ratd.experiments.spin_up import how
 from ratd.experiments.spin_up import run as spinup
 from ratd.experiments.spin_up.records import edge_of_record
 from ratd.experiments.spin_up.run import spin_up
@@ -159,7 +160,7 @@ def test_same_input_same_bits(run, grain):
 
 def test_killed_run_goes_on_with_the_same_bits(run, grain, tmp_path, monkeypatch):
     """Cut off after some checkpoints, twice; the third start finishes, and does not begin anew."""
-    monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     path = tmp_path / "grain.checkpoint"
     real = spinup.go_on
     calls = []
@@ -182,7 +183,7 @@ def test_killed_run_goes_on_with_the_same_bits(run, grain, tmp_path, monkeypatch
 
 
 def test_a_slow_record_is_done_in_pieces_and_goes_on_within_it(run, grain, tmp_path, monkeypatch):
-    monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     monkeypatch.setattr(spinup, "CALL", 7)
     path = tmp_path / "grain.checkpoint"
     real, within = spinup.go_on, []
@@ -201,7 +202,7 @@ def test_a_slow_record_is_done_in_pieces_and_goes_on_within_it(run, grain, tmp_p
 
 
 def test_foreign_or_damaged_checkpoint_is_not_used(grain, tmp_path, monkeypatch):
-    monkeypatch.setattr(spinup, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     path = tmp_path / "c"
     short = spin_up(grain, epsilon=0.3, max_steps=3000, checkpoint=path)
     assert path.exists()
@@ -236,7 +237,7 @@ def test_integration_that_fails_says_so(grain, monkeypatch):
 
 
 def test_progress_is_told(grain, monkeypatch):
-    monkeypatch.setattr(records, "PROGRESS_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
     said = []
     spin_up(grain, epsilon=0.3, progress=lambda *words: said.append(words))
     omega, mass, to_go, steps = np.array(said).T

@@ -1,12 +1,13 @@
 """The loop that compression and tension share: a box that changes at a given rate, and records of what is in it."""
 
 import math
-import time as clock
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from ratd.experiments import intervals
+from ratd.experiments.intervals import Interval
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.hand_over import hand_over
@@ -19,9 +20,6 @@ from ratd.observables.pressure import COMPONENTS, volume
 
 __all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
 
-CHECKPOINT_INTERVAL = 60.0
-PROGRESS_INTERVAL = 2.0
-"""Wall time [s] between two checkpoints, and two calls of `progress`."""
 
 # name -> dimension after `record`, units, meaning
 RECORDS = {
@@ -113,7 +111,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     else:
         state, tables = loaded
         rows, kept = list(tables["rows"]), list(tables["kept"])
-    start = saved = told = clock.monotonic()
+    to_save, to_tell = Interval(intervals.CHECKPOINT), Interval(intervals.PROGRESS)
     begun = rows[-1][0]
     for number in range(len(rows), len(marks) + 1):
         if stop is not None and stop(np.array(rows)):
@@ -134,14 +132,11 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
             # the first record has the energy at the start in place of a residual
             before = as_dict(rows[change]) if number > change else as_dict(rows[0]) | {"energy_residual": 0.0}
             check(as_dict(rows[-1]), before, long)
-        now = clock.monotonic()
-        if checkpoint is not None and now - saved > CHECKPOINT_INTERVAL:
+        if checkpoint is not None and to_save.passed():
             checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
-            saved = now
-        if tell is not None and now - told > PROGRESS_INTERVAL:
+        if tell is not None and to_tell.passed():
             done = (rows[-1][0] - begun) / (marks[-1] - begun)
-            tell(as_dict(rows[-1]), (now - start) * (1.0 / done - 1.0))
-            told = now
+            tell(as_dict(rows[-1]), to_tell.elapsed() * (1.0 / done - 1.0))
     kept = np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
     return state, np.array(rows), kept
 

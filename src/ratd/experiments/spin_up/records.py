@@ -1,10 +1,10 @@
 """What is recorded of a spin-up: rows, snapshots, fragments that left, and the Dataset that they make."""
 
-import time
-
 import numpy as np
 import xarray as xr
 
+from ratd.experiments import intervals
+from ratd.experiments.intervals import Interval
 from ratd.drives.largest import (
     ANGULAR_MOMENTUM, CARRIED, DRAGGED, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK, energy_of_motion,
 )  # fmt: skip
@@ -17,8 +17,6 @@ from ratd.observables.energy import dissipated, kinetic, stored
 from ratd.observables.pieces import fragment_shape
 from ratd.observables.stress import extreme_normal_force, total_stress
 
-PROGRESS_INTERVAL = 2.0
-"""Wall time [s] between two calls of `progress`."""
 
 # name -> units, meaning, type; in the order of the columns of the records
 RECORDS = {
@@ -149,7 +147,7 @@ class Watch:
 
     def __init__(self, run, progress):
         self.omega_1, self.mass, self.progress = run.motion.omega_1, run.rows[0][2], progress
-        self.start = self.last = time.monotonic()
+        self.to_tell = Interval(intervals.PROGRESS)
         self.begun = self._done(run.state.drive[GREATEST])
 
     def _done(self, omega):
@@ -160,11 +158,9 @@ class Watch:
     def look(self, run):
         """Tell, if it is time to."""
         row = run.rows[-1]
-        now = time.monotonic()
-        if self.progress is None or now - self.last < PROGRESS_INTERVAL:
+        if self.progress is None or not self.to_tell.passed():
             return
-        self.last = now
         done = self._done(row[0])
         # Most of the mass gone: each further step costs little.
-        to_go = (now - self.start) * max(0.0, 3.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
+        to_go = self.to_tell.elapsed() * max(0.0, 3.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
         self.progress(row[0], row[2] / self.mass, to_go, int(run.state.counter[STEPS]))

@@ -1,9 +1,9 @@
 """Spin-up of one grain until it is disrupted: relaxation at rest, then records at fixed omega, with checkpoints."""
 
-import time
-
 import numpy as np
 
+from ratd.experiments import intervals
+from ratd.experiments.intervals import Interval
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.drives.largest import OMEGA, TORQUE_WORK
@@ -34,8 +34,6 @@ from ratd.laws.jkr_with_springs import jkr
 
 __all__ = ["spin_up"]
 
-CHECKPOINT_INTERVAL = 60.0
-"""Wall time [s] between two checkpoints."""
 BALANCE = 0.05
 """What the balance of energy may lack more after a part of a run, over the work so far, or over the rotation of a solid
 sphere at the cut bound where that is more. A piece that swings back may land in a long step with an overlap that no
@@ -138,12 +136,11 @@ def spin_up(
     if not run.load(checkpoint):
         run.begin(relax(grain, law=run.law, timestep_factor=timestep_factor))
     watch = Watch(run, progress)
-    saved = time.monotonic()
+    to_save = Interval(intervals.CHECKPOINT)
     while run.reason is None:
         run.advance()
-        if run.reason is None and checkpoint is not None and time.monotonic() - saved > CHECKPOINT_INTERVAL:
+        if run.reason is None and checkpoint is not None and to_save.passed():
             run.save(checkpoint)
-            saved = time.monotonic()
         watch.look(run)
     return run.dataset()
 
