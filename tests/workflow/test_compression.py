@@ -30,5 +30,4 @@ def test_clusters_are_grown_compressed_pulled_and_drawn_and_nothing_runs_twice(t
     table = io.read(results / "compression" / "fiducial.nc", "compression_set")
     assert table["seed"].values.tolist() == [0, 1] and table["phi"].values[-1] < 0.2
     assert {"fiducial", "fiducial.nc"} <= {path.name for path in (results / "compression").iterdir()}
-    assert "to go" not in done.stdout or "phi" in done.stdout
     assert pipeline.planned("compression") == {}

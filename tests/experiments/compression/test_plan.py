@@ -3,6 +3,7 @@
 import pytest
 
 import ratd
+from ratd.experiments.compression import document
 from ratd.experiments.compression import plan as plans
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.squeeze import squeezed
@@ -22,6 +23,17 @@ def test_configs_that_come_with_ratd_are_good(name):
     for wanted in plan.sets:
         assert plan.grow(wanted)["n"] <= 16384 and plan.compress(wanted)["strain_rate"] >= 1e-7
         assert len(plan.files(plans.RUN, wanted)) == len(plan.seeds(wanted)) >= 2
+
+
+def test_the_large_config_adds_to_the_default_one():
+    default = plan_of("config/compression_default.yaml")
+    large = plan_of("config/compression_default.yaml", "config/compression_large.yaml")
+    assert large.results == default.results and set(default.sets) < set(large.sets)
+    assert set(default.files(plans.RUN, "n_16384")) < set(large.files(plans.RUN, "n_16384"))
+    assert set(default.tables) < set(large.tables)
+    assert document.CONFIGS[-2:] == ("config/compression_default.yaml", "config/compression_large.yaml")
+    for name in set(large.sets) - set(default.sets):
+        assert large.grow(name)["n"] >= 16384
 
 
 def test_the_paper_is_as_printed():

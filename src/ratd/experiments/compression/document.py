@@ -27,7 +27,13 @@ DATA = Path("docs/compression/data")
 FIGURES = Path("docs/compression")
 TEMPLATE = Path("docs/templates/compression.md")
 DOCUMENT = Path("docs/compression.md")
-CONFIGS = ("config/config.yaml", "config/spin_up.yaml", "config/compression.yaml", "config/compression_default.yaml")
+CONFIGS = (
+    "config/config.yaml",
+    "config/spin_up.yaml",
+    "config/compression.yaml",
+    "config/compression_default.yaml",
+    "config/compression_large.yaml",
+)
 SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
 PEER = Path("docs/validation/data")
