@@ -13,6 +13,7 @@ SMALL = {
         "isotropy": None,
         "high_density": None,
         "monomers": None,
+        "fewer_steps": None,
         "figure4": {"set": "fiducial"},
         "tension": {"pulls": ["x"]},
     },
@@ -24,6 +25,7 @@ def test_clusters_are_grown_compressed_pulled_and_drawn_and_nothing_runs_twice(t
     (tmp_path / "tiny.yaml").write_text(yaml.safe_dump({"results": "results/tiny", "compression": SMALL}))
     done = pipeline.run("compression")
     assert done.returncode == 0, done.stdout
+    assert {path.name for path in (tmp_path / "results/tiny/clusters").iterdir()} == {"fiducial"}
     results = tmp_path / "results" / "tiny"
     for name in ("figure4", "tension"):
         assert (results / "figures" / f"compression_{name}.png").stat().st_size > 10_000
