@@ -1,8 +1,8 @@
 """Order of the test files."""
 
 LONGEST = ("test_pipeline.py", "test_benchmarks.py", "test_tutorial.py", "test_slurm.py")
-"""Started first, so that no worker is left alone with it at the end. The first two need other parts of the time loop, so
-that no two workers compile the same."""
+"""Started first, so that no worker is left alone with it at the end. The first two need other parts of the time loop:
+two workers do not compile the same."""
 
 
 def pytest_collection_modifyitems(items):

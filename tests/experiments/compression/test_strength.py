@@ -46,7 +46,10 @@ def test_the_filling_factor_at_a_pressure_is_found():
     table = table_of(lambda phi: P_0 * phi**3)
     assert strength.phi_at(table, P_0 * 0.2**3).value == pytest.approx([0.2])
     assert strength.ratio_at(table, 0.1).value == pytest.approx([1.0])
-    assert strength.scatter_at(table_of(lambda phi: P_0 * phi**3, 500, 0.1), 0.1) == pytest.approx(0.1, rel=0.15)
+    scatter = strength.scatter_at(table_of(lambda phi: P_0 * phi**3, 500, 0.1), 0.1)
+    assert scatter.value == pytest.approx(0.1, rel=0.15)
+    # of a normal distribution it is known to 1/sqrt(2 n)
+    assert scatter.error == pytest.approx(0.1 / np.sqrt(1000), rel=0.3)
 
 
 def test_runs_that_begin_later_count_as_nothing_or_not_at_all():
@@ -65,8 +68,19 @@ def test_who_overtakes_whom():
     for way, energy in (("sliding", phi**6), ("rolling", phi**3 * 0.5 * 0.2**3)):
         table[f"dissipated_{way}"] = (("seed_number", "phi_bin"), np.tile(energy, (5, 1)))
     # 6 phi^6 = 1.5 phi^3 0.2^3
-    assert strength.overtakes(table, "sliding", "rolling") == pytest.approx(0.2 * 0.25 ** (1 / 3), rel=0.2)
-    assert np.isnan(strength.overtakes(table, "rolling", "sliding"))
+    found = strength.overtakes(table, "sliding", "rolling")
+    assert found.value == pytest.approx(0.2 * 0.25 ** (1 / 3), rel=0.01) and found.error == pytest.approx(
+        0.0, abs=1e-12
+    )
+    assert np.isnan(strength.overtakes(table, "rolling", "sliding").value)
+    # of clusters that cross at other filling factors
+    scale = np.exp(np.random.default_rng(0).normal(0.0, 0.1, 5))[:, None]
+    table["dissipated_sliding"] = (("seed_number", "phi_bin"), scale * phi**6)
+    found = strength.overtakes(table, "sliding", "rolling")
+    # 2 phi^3 = 0.5 0.2^3/scale: phi goes with the cube root of the mean scale
+    expected = 0.2 * (0.25 / scale.mean()) ** (1 / 3)
+    assert found.value == pytest.approx(expected, rel=0.01)
+    assert found.error == pytest.approx(found.value / 3 * scale.std(ddof=1) / np.sqrt(5) / scale.mean(), rel=0.3)
 
 
 def test_a_range_without_data_is_one_sentence():

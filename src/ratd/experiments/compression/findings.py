@@ -23,7 +23,7 @@ from ratd.experiments.compression.strength import (
     FIT_RANGE,
     NEAR,
     along_axes,
-    anisotropy,
+    anisotropy_at,
     compared,
     far_slope_of_structure,
     fit_power_law,
@@ -36,7 +36,7 @@ from ratd.experiments.compression.strength import (
     share_at,
     slope_of_structure,
 )
-from ratd.base.measured import Measured
+from ratd.base.measured import Measured, median
 
 __all__ = ["findings", "spun_up"]
 
@@ -86,12 +86,12 @@ def of_set(name, table):
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
     for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
         found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
-        found[f"scatter_{phi:g}"] = scatter_at(table, phi)
+        found[f"scatter_{phi:g}"] = _measured(scatter_at(table, phi))
         k = _bin_at(table, phi)
         contacts = table["n_contacts"].values[:, k] / found["N"]
         found[f"contacts_{phi:g}"] = Measured(*mean_of(contacts[np.isfinite(contacts)]))
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
-        found[f"anisotropy_{phi:g}"] = float(np.mean(anisotropy(table)[max(k - 3, 0) : k + 4]))
+        found[f"anisotropy_{phi:g}"] = _measured(anisotropy_at(table, phi))
         found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), _several(along_axes(table, phi)), strict=True))
         for way in WAYS:
             found[f"{way}_{phi:g}"] = _measured(share_at(table, way, phi))
@@ -103,10 +103,10 @@ def of_set(name, table):
         found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
         others = [_several(fit_power_law(table, *each))[0].value for each in (LOW_RANGE, *OTHER_RANGES)]
         found |= {"exponent_least": min(others), "exponent_most": max(others)}
-    found["rolling_over_made"] = overtakes(table, "rolling", "made", found["static"])
-    found["rolling_over_damping"] = overtakes(table, "rolling", "damping", found["static"])
+    found["rolling_over_made"] = _measured(overtakes(table, "rolling", "made", found["static"]))
+    found["rolling_over_damping"] = _measured(overtakes(table, "rolling", "damping", found["static"]))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
-        found[f"{first}_over_{second}"] = overtakes(table, first, second)
+        found[f"{first}_over_{second}"] = _measured(overtakes(table, first, second))
     part = table["energy_residual"].values / table["work"].values
     for phi in [phi for phi in (0.01, 0.02, 0.03, 0.1, 0.3) if phi < last]:
         found[f"residual_{phi:g}"] = float(np.nanmax(np.abs(part[:, table["phi"].values > phi])))
@@ -389,7 +389,7 @@ def verdicts(values, sets):
         if name != beside and {f"{name}.ratio", f"{beside}.ratio"} <= set(values):
             found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
     if "xi_p48_32" in values:
-        alike = max(abs(values[f"xi_p48_{name}"] - 1.0) for name in ("8", "32")) < 0.4
+        alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
@@ -431,8 +431,11 @@ def findings(sets, entries, spun, lammps=None, box=None):
             {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}
         )
     if {HIGH, "xi_2", "xi_32"} <= set(sets):
-        values["xi_p48_8"] = 4.0 * values[f"{HIGH}.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
-        values["xi_p48_32"] = 16.0 * values["xi_32.ratio_0.48"].value / values["xi_2.ratio_0.48"].value
+        for name, times in ((HIGH, 4.0), ("xi_32", 16.0)):
+            own, least = values[f"{name}.ratio_0.48"], values["xi_2.ratio_0.48"]
+            ratio = times * own.value / least.value
+            parts = own.error / own.value, least.error / least.value
+            values[f"xi_p48_{'8' if name == HIGH else '32'}"] = Measured(ratio, ratio * math.hypot(*parts))
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )
@@ -446,5 +449,5 @@ def findings(sets, entries, spun, lammps=None, box=None):
     if spun is not None:
         over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
         for kind in np.unique(spun["type"]):
-            values[f"spun.{kind}"] = float(np.median(over[spun["type"] == kind]))
+            values[f"spun.{kind}"] = median(over[spun["type"] == kind])
     return values | verdicts(values, sets)

@@ -62,6 +62,13 @@ def of_means(pressure, fit):
     return Fit(value, np.array([jackknife_error(column) for column in left.T]), n)
 
 
+def of_clusters(n, number):
+    """A `Fit` of ``number(own)``, one number of the clusters `own` (indices) of n."""
+    every = np.arange(n)
+    left = np.array([number(np.delete(every, k)) for k in range(n)]) if n > 1 else np.array([])
+    return Fit(np.array([number(every)]), np.array([jackknife_error(left) if n > 1 else np.nan]), n)
+
+
 def _within(table, low, high):
     """Filling factors of bins inside a range, and pressures there, (seeds, bins), of seeds that reach all of them."""
     phi = table["phi"].values
@@ -133,10 +140,14 @@ def ratio_at(table, phi):
 
 
 def scatter_at(table, phi):
-    """Standard deviation of P over its mean between single clusters near a filling factor."""
+    """Standard deviation of P over its mean between single clusters near a filling factor, `Fit` of one number."""
     phi, pressure = _within(table, phi / NEAR, phi * NEAR)
     single = (pressure / phi**3).mean(axis=1)
-    return float(single.std(ddof=1) / single.mean()) if len(single) > 1 else np.nan
+
+    def scatter(values):
+        return values.std(ddof=1) / values.mean() if len(values) > 1 else np.nan
+
+    return of_clusters(len(single), lambda own: scatter(single[own]))
 
 
 def mean_pressure(table, *, alone=False):
@@ -169,13 +180,15 @@ def phi_at(table, pressure, high=0.45):
     return of_means(all_pressures, fit)
 
 
-def rates(table, ways):
+def rates(table, ways, own=slice(None)):
     """Energy dissipated per step in ln phi [J], by way, mean over seeds.
 
     Parameters
     ----------
     table : xarray.Dataset
     ways : sequence of str
+    own : indices, optional
+        Of the clusters; all of them by default.
 
     Returns
     -------
@@ -187,7 +200,7 @@ def rates(table, ways):
     phi = table["phi"].values[every]
     found = {}
     for way in ways:
-        energy = table[f"dissipated_{way}"].values[:, every]
+        energy = table[f"dissipated_{way}"].values[own][:, every]
         found[way] = np.diff(energy, axis=1).mean(axis=0) / np.diff(np.log(phi))
     return np.sqrt(phi[1:] * phi[:-1]), found
 
@@ -200,23 +213,45 @@ def share_at(table, way, phi):
 
 
 def overtakes(table, first, second, low=0.02):
-    """Filling factor from which on one way dissipates faster than another; NaN where it never does."""
-    phi, rate = rates(table, (first, second))
-    good = np.isfinite(rate[first]) & np.isfinite(rate[second]) & (phi > low)
-    behind = np.flatnonzero(good & (rate[first] <= rate[second]))
-    ahead = np.flatnonzero(good & (rate[first] > rate[second]))
-    after = ahead[ahead > (behind.max() if len(behind) else -1)]
-    return float(phi[after.min()]) if len(after) else np.nan
+    """Filling factor from which on one way dissipates faster than another; NaN where it never does.
+
+    Returns
+    -------
+    Fit
+        Of one number. Where it was behind before, the logarithm of the ratio is taken as straight in ln phi between the
+        last rates at which it is behind and the first at which it is ahead.
+    """
+
+    def crossing(own):
+        phi, rate = rates(table, (first, second), own)
+        good = np.isfinite(rate[first]) & np.isfinite(rate[second]) & (phi > low)
+        phi, one, other = phi[good], rate[first][good], rate[second][good]
+        behind = np.flatnonzero(one <= other)
+        last = behind.max() if len(behind) else -1
+        if last == len(phi) - 1:
+            return np.nan
+        if last < 0 or one[last] <= 0.0 or other[last + 1] <= 0.0:
+            return phi[last + 1]
+        ahead = np.log(one[last : last + 2] / other[last : last + 2])
+        return np.exp(np.interp(0.0, ahead, np.log(phi[last : last + 2])))
+
+    return of_clusters(table.sizes["seed_number"], crossing)
 
 
-def anisotropy(table):
+def anisotropy(table, own=slice(None)):
     """Standard deviation of P_xx, P_yy, P_zz, root mean square over seeds, over the mean pressure, (bins,).
 
-    NaN where the mean pressure is not above 0.
+    NaN where the mean pressure is not above 0. `own` are indices of clusters, all of them by default.
     """
-    axes = np.stack([table[f"pressure_{name}"].values for name in ("xx", "yy", "zz")])
-    mean = table["pressure"].values.mean(axis=0)
+    axes = np.stack([table[f"pressure_{name}"].values[own] for name in ("xx", "yy", "zz")])
+    mean = table["pressure"].values[own].mean(axis=0)
     return np.sqrt((axes.std(axis=0, ddof=1) ** 2).mean(axis=0)) / np.where(mean > 0.0, mean, np.nan)
+
+
+def anisotropy_at(table, phi):
+    """Mean of `anisotropy` near a filling factor, `Fit` of one number."""
+    near = np.abs(np.log(table["phi"].values / phi)) < np.log(NEAR)
+    return of_clusters(table.sizes["seed_number"], lambda own: anisotropy(table, own)[near].mean())
 
 
 def along_axes(table, phi):
