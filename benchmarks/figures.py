@@ -3,7 +3,8 @@
 import numpy as np
 
 from benchmarks.tables import pair_ratios
-from ratd.pictures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, save, styled
 
 BLUE, ORANGE = "#0072B2", "#D55E00"
 MATERIAL_MARKERS = "osD^vP"

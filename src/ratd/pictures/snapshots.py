@@ -8,7 +8,6 @@ from matplotlib.colors import Normalize, to_rgb
 
 from ratd.base.errors import InputError
 from ratd.base.units import NM
-from ratd.pictures.style import drive_of, drive_text
 
 LARGEST = "#0072B2"
 OTHERS = ("#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442")
@@ -19,6 +18,9 @@ CROWDED = 0.98
 """Part of the forces that the scale of colours covers; the few above have the colour of its end."""
 FARTHEST = 2.0
 """Half width of the pictures in the greatest distance of a monomer in the first one; what flew farther is not shown."""
+
+DRIVE_NAMES = {"prescribed": "driven", "torque": "driven by a torque", "literal": "printed terms of the frame"}
+"""Drive of the code -> what it is, for people."""
 
 
 @dataclass(frozen=True)
@@ -142,3 +144,27 @@ def title_of(run, drive=None):
     size = f"{float(attrs['a_eff']) / NM:.4g} nm"
     title = f"{attrs['material']} {attrs['type']} {size}, seed {attrs['seed']}\n"
     return title + drive_text(drive_of([run]) if drive is None else drive)
+
+
+def drive_text(drive):
+    """How the drive is named in a title."""
+    return DRIVE_NAMES.get(drive, f"drive: {drive}") if drive else "drive not stated"
+
+
+def drive_of(table):
+    """The drives that a table or a list of runs names, joined.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame or sequence of xarray.Dataset
+
+    Returns
+    -------
+    str
+        Empty if none is named.
+    """
+    if isinstance(table, list | tuple):
+        drives = {run.attrs.get("drive", "") for run in table}
+    else:
+        drives = set(table["drive"].dropna()) if "drive" in table else set()
+    return ", ".join(sorted(drives - {""}))

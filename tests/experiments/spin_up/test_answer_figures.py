@@ -10,9 +10,10 @@ from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.figures.fragments import cumulative, fragments, shares
 from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import over_the_paper, overview
+from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
-from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS, TYPE_COLOUR, TYPE_MARKER
+from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS
 from synthetic_runs import make_fragments, make_table
 
 FACTOR = {"BA": 0.02, "BAM1": 0.05, "BAM2": 0.1}

@@ -31,26 +31,28 @@ from ratd.experiments.spin_up.figures.figure10 import figure10
 from ratd.experiments.spin_up.figures.fragments import fragments
 from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import overview
+from ratd.experiments.spin_up.figures.style import (
+    TYPE_COLOUR,
+    TYPE_MARKER,
+    mean_and_range,
+    middle_and_most,
+    offsets,
+    type_style,
+)
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.pairs import force_controlled_omega
 from ratd.experiments.spin_up.printed import TABLE_3
 from ratd.experiments.spin_up.tensile import predictions, tensile_strength_tatsuuma2019
+from ratd.pictures.snapshots import drive_text
 from ratd.pictures.style import (
     ONE_COLUMN,
     TWO_COLUMNS,
-    TYPE_COLOUR,
-    TYPE_MARKER,
-    drive_text,
     label_ends,
     logarithmic,
-    mean_and_range,
-    middle_and_most,
-    offsets,
     own_fonts_first,
     power_of_ten,
     save,
     styled,
-    type_style,
 )
 from synthetic_runs import make_fragments, make_run, make_table
 

@@ -6,7 +6,8 @@ from matplotlib.lines import Line2D
 from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.calibration import CALIBRATION_COLUMNS, FIT_VALUES, ONSET, PRINTED_STEP, same_rate
-from ratd.pictures.style import GREY, ONE_COLUMN, bar_lengths, drive_text, logarithmic, nanometres, new_figure, styled
+from ratd.pictures.snapshots import drive_text
+from ratd.pictures.style import GREY, ONE_COLUMN, bar_lengths, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
 
 RUN, FIT = "#0072B2", "#D55E00"

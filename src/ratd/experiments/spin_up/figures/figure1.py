@@ -9,7 +9,8 @@ from ratd.aggregates.files import read_grains
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pictures.spheres import outline, render, scale_length, view_axes
-from ratd.pictures.style import MILLIMETRE, ONE_COLUMN, TWO_COLUMNS, nanometres, new_figure, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.style import MILLIMETRE, ONE_COLUMN, TWO_COLUMNS, nanometres, new_figure, styled
 
 FORWARD, UP = np.array([0.35, 0.55, 1.0]), np.array([1.0, 0.0, 0.0])
 """Towards the viewer and upwards, along a_1, a_2, a_3: all three axes are seen, a_1 upright."""

@@ -8,7 +8,8 @@ from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import sort_cells
 from ratd.experiments.spin_up.printed import PAIR_ERROR
-from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, drive_text, logarithmic, nanometres, new_figure, styled
+from ratd.pictures.snapshots import drive_text
+from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, logarithmic, nanometres, new_figure, styled
 from ratd.pipeline import io
 
 LOOK = {

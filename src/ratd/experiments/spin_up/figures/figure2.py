@@ -5,22 +5,9 @@ import numpy as np
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.run_files import read_table
-from ratd.pictures.style import (
-    GREY,
-    TWO_COLUMNS,
-    drive_of,
-    drive_text,
-    empty,
-    logarithmic,
-    mean_and_range,
-    nanometres,
-    new_figure,
-    offsets,
-    size_limits,
-    sizes_label,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import mean_and_range, offsets, size_limits, sizes_label, type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import GREY, TWO_COLUMNS, empty, logarithmic, nanometres, new_figure, styled
 
 PANELS = (
     ("n_monomers", r"number of monomers $N_\mathrm{mon}$", "log"),

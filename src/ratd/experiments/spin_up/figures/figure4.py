@@ -8,18 +8,9 @@ from ratd.base.words import plural
 from ratd.experiments.spin_up.marks import LOSS, MAJORITY, disruption
 from ratd.experiments.spin_up.printed import FIRST_LOSS
 from ratd.experiments.spin_up.run_files import read_runs
-from ratd.pictures.style import (
-    GREY,
-    HIGHLIGHT,
-    ONE_COLUMN,
-    drive_of,
-    drive_text,
-    logarithmic,
-    new_figure,
-    power_of_ten,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, power_of_ten, styled
 
 LIMITS = (8e6, 2e9)
 """omega [rad s-1] at the ends of the axis for the grains of the paper's figure, whatever turns them."""

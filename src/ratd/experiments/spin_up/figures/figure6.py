@@ -8,17 +8,9 @@ from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.oblateness import oblate_counts
 from ratd.experiments.spin_up.run_files import read_table
-from ratd.pictures.style import (
-    GREY,
-    ONE_COLUMN,
-    TWO_COLUMNS,
-    drive_of,
-    drive_text,
-    empty,
-    new_figure,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, empty, new_figure, styled
 
 SIZES = (200e-9, 350e-9, 500e-9)
 """Sizes [m] that the paper shows."""

@@ -9,23 +9,16 @@ from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.eq33 import eq33, eq33_omega, radius_of_reading
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
-from ratd.pictures.style import (
-    ONE_COLUMN,
-    TWO_COLUMNS,
-    drive_of,
-    drive_text,
-    empty,
-    logarithmic,
+from ratd.experiments.spin_up.figures.style import (
     mean_and_range,
     middle_and_most,
-    nanometres,
-    new_figure,
     offsets,
     size_limits,
     sizes_label,
-    styled,
     type_style,
 )
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS, empty, logarithmic, nanometres, new_figure, styled
 
 FIT = {"lw": 1.0, "ls": "-", "zorder": 1}
 PRINTED = {"lw": 0.9, "ls": (0, (4, 2)), "zorder": 1}

@@ -10,22 +10,9 @@ from ratd.experiments.spin_up.eq33 import eq33_omega, fitted_numbers, radius_of_
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.run_files import read_fit, read_grown, read_table
 from ratd.experiments.spin_up.tensile import predictions
-from ratd.pictures.style import (
-    GREY,
-    ONE_COLUMN,
-    drive_of,
-    drive_text,
-    empty,
-    label_ends,
-    logarithmic,
-    mean_and_range,
-    nanometres,
-    new_figure,
-    size_limits,
-    sizes_label,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import mean_and_range, size_limits, sizes_label, type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import GREY, ONE_COLUMN, empty, label_ends, logarithmic, nanometres, new_figure, styled
 
 BAND = ("S13 low", "T19", "S13 high")
 """Powers of phi from 1.6 to 1.9, which make one band."""

@@ -10,7 +10,9 @@ from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
-from ratd.pictures.style import TWO_COLUMNS, drive_of, drive_text, new_figure, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import TWO_COLUMNS, new_figure, styled
 from ratd.pipeline import io
 
 AXIS = {

@@ -8,7 +8,9 @@ from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.formulae import OWN
 from ratd.experiments.spin_up.parameters import MARKS
-from ratd.pictures.style import TWO_COLUMNS, drive_of, drive_text, logarithmic, new_figure, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import TWO_COLUMNS, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
 TEXT = {

@@ -7,7 +7,9 @@ from matplotlib.patches import Patch
 from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.fragmentation import SIZE_CLASSES, STAGES, size_class
-from ratd.pictures.style import GREY, TWO_COLUMNS, drive_text, logarithmic, new_figure, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_text
+from ratd.pictures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, styled
 
 EXPONENT = 3.5
 """Of a number of fragments by radius to compare with, dN/da ~ a^-3.5, that of models of shattering (Sect. 7.2)."""

@@ -9,18 +9,9 @@ from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_of, size_key
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit
-from ratd.pictures.style import (
-    ONE_COLUMN,
-    drive_of,
-    drive_text,
-    label_ends,
-    logarithmic,
-    nanometres,
-    new_figure,
-    sizes_label,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import sizes_label, type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import ONE_COLUMN, label_ends, logarithmic, nanometres, new_figure, styled
 
 MARK_TEXT = {
     "omega_first_loss": "of the first loss of mass",

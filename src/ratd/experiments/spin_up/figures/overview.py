@@ -8,21 +8,9 @@ from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.pictures.style import (
-    TWO_COLUMNS,
-    drive_of,
-    drive_text,
-    label_ends,
-    logarithmic,
-    middle_and_most,
-    nanometres,
-    new_figure,
-    offsets,
-    size_limits,
-    sizes_label,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import middle_and_most, offsets, size_limits, sizes_label, type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import TWO_COLUMNS, label_ends, logarithmic, nanometres, new_figure, styled
 
 APART = 1.6
 """Distance of the types at one size over that of the other figures (`offsets`)."""

@@ -5,7 +5,8 @@ import numpy as np
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.pulled import FACTOR, MARKS, beside_spin, usual
-from ratd.pictures.style import GREY, TWO_COLUMNS, bar_lengths, empty, logarithmic, new_figure, styled, type_style
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.style import GREY, TWO_COLUMNS, bar_lengths, empty, logarithmic, new_figure, styled
 
 PANELS = {"box": "squeezed, pulled in the box", "ends": "as grown, pulled by the ends", "spin": "as grown, turned"}
 """Panel -> its title."""

@@ -5,19 +5,9 @@ from matplotlib.lines import Line2D
 
 from ratd.experiments.spin_up.radiation import DIFFUSE
 from ratd.experiments.spin_up.surviving import COMPUTED, is_extrapolated, surviving
-from ratd.pictures.style import (
-    GREY,
-    ONE_COLUMN,
-    TWO_COLUMNS,
-    drive_of,
-    drive_text,
-    empty,
-    logarithmic,
-    nanometres,
-    new_figure,
-    styled,
-    type_style,
-)
+from ratd.experiments.spin_up.figures.style import type_style
+from ratd.pictures.snapshots import drive_of, drive_text
+from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, empty, logarithmic, nanometres, new_figure, styled
 
 STRENGTHS = np.geomspace(0.1, 1e5, 121)
 SIZES = (40e-9, 1000e-9)
