@@ -29,6 +29,7 @@ from ratd.experiments.compression.strength import (
     fit_power_law,
     fit_with_limit,
     of_means,
+    of_same_clusters,
     overtakes,
     phi_at,
     ratio_at,
@@ -40,7 +41,7 @@ from ratd.base.measured import Measured, median
 
 __all__ = ["findings", "spun_up"]
 
-AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
+AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
@@ -56,12 +57,18 @@ TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
-BY_SIZE = ("n_1024", "fiducial", "n_16384")
+BY_SIZE = ("n_1024", "fiducial", "n_16384", "n_65536")
 """Sets that differ in the number of monomers, the fewest first."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
+LOOSE = {
+    "slow": ("n_16384", 0.0055, 0.009),
+    "slow_150": ("slow", 0.002, 0.009),
+    "explicit_16384": ("n_16384", 0.0055, 0.019),
+}
+"""Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
 BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the fiducial set."""
 
@@ -117,7 +124,8 @@ def of_set(name, table):
         found[f"far_slope_{nominal}"] = _measured(far_slope_of_structure(table, k))
     if last > 0.4:
         found |= _with_limit(table, min(0.5, last))
-    found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
+    if last > 0.1:
+        found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
     found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
     found["tatsuuma_300"] = _solved(300.0, found["P0"])
     return {f"{name}.{key}": value for key, value in found.items()}
@@ -218,6 +226,10 @@ def of_pairs(sets):
             continue
         ratio, steeper = _several(compared(table, sets[beside]))
         found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
+    for name, (beside, low, high) in LOOSE.items():
+        if {name, beside} <= set(sets):
+            found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]
+            found[f"{name}.paired_n"] = of_same_clusters([sets[name], sets[beside]])[0].sizes["seed_number"]
     for name, larger in itertools.pairwise(BY_SIZE):
         for phi in (0.01, 0.02, 0.03, 0.05):
             if {name, larger} <= set(sets):
