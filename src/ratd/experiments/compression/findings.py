@@ -214,6 +214,9 @@ def of_closed_formulae():
     P_0 = rolling_pressure(ice.surface_energy, ice.critical_rolling_displacement, radius)
     found = {f"v_d_{phi:g}": 100.0 * face_speed(rate, PAPER_N, radius, phi) for phi in (0.001, 0.01, 0.1)}
     found["sound"] = 100.0 * float(sound_speed_kataoka2013(1.0, P_0, ice.density))
+    # of the faces of the box, over the speed of sound
+    for phi in (0.003, 0.005, 0.01, 0.02, 0.03):
+        found[f"mach_{phi:g}"] = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
     return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
 
 
