@@ -29,7 +29,6 @@ from ratd.experiments.compression.strength import (
     fit_power_law,
     fit_with_limit,
     of_means,
-    of_same_clusters,
     overtakes,
     phi_at,
     ratio_at,
@@ -57,17 +56,13 @@ TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
-BY_SIZE = ("n_1024", "fiducial", "n_16384", "n_65536")
+BY_SIZE = ("n_1024", "fiducial", "n_16384")
 """Sets that differ in the number of monomers, the fewest first."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
 HIGH = "n_1024"
 """The set that high filling factors are told of; the fiducial one need not go so far."""
-LOOSE = {
-    "slow": ("n_16384", 0.0055, 0.009),
-    "slow_150": ("slow", 0.002, 0.009),
-    "explicit_16384": ("n_16384", 0.0055, 0.019),
-}
+LOOSE = {"slow": ("n_16384", 0.0055, 0.009), "explicit_16384": ("n_16384", 0.008, 0.019)}
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
 BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the fiducial set."""
@@ -232,7 +227,12 @@ def of_pairs(sets):
     for name, (beside, low, high) in LOOSE.items():
         if {name, beside} <= set(sets):
             found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]
-            found[f"{name}.paired_n"] = of_same_clusters([sets[name], sets[beside]])[0].sizes["seed_number"]
+            for phi in (0.005, 0.01, 0.02, 0.03):
+                if phi * NEAR < sets[name]["phi"].values[-1]:
+                    ratio = compared(sets[name], sets[beside], phi / NEAR, phi * NEAR)
+                    found[f"{name}.over_{phi:g}"] = _several(ratio)[0]
+            if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
+                found[f"{name}.steeper_low"] = _several(compared(sets[name], sets[beside], *LOW_RANGE))[1]
     for name, larger in itertools.pairwise(BY_SIZE):
         for phi in (0.01, 0.02, 0.03, 0.05):
             if {name, larger} <= set(sets):
