@@ -406,6 +406,12 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
+    if "slow.over_0.03" in values:
+        early, late = values["slow.over_0.01"], values["slow.over_0.03"]
+        found["slow_0.01"] = "less" if early.value + 2.0 * early.error < 1.0 else "as much"
+        found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
+        steeper = values["slow.steeper_low"]
+        found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
