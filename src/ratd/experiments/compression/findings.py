@@ -29,6 +29,7 @@ from ratd.experiments.compression.strength import (
     fit_power_law,
     fit_with_limit,
     of_means,
+    of_same_clusters,
     overtakes,
     phi_at,
     ratio_at,
@@ -210,8 +211,11 @@ def of_closed_formulae():
     found = {f"v_d_{phi:g}": 100.0 * face_speed(rate, PAPER_N, radius, phi) for phi in (0.001, 0.01, 0.1)}
     found["sound"] = 100.0 * float(sound_speed_kataoka2013(1.0, P_0, ice.density))
     # of the faces of the box, over the speed of sound
-    for phi in (0.003, 0.005, 0.01, 0.02, 0.03):
-        found[f"mach_{phi:g}"] = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
+    for strain_rate in (1e-7, 3e-7, 3e-8):
+        rate = box_rate(strain_rate, time_unit(ice, radius))
+        for phi in (0.001, 0.003, 0.005, 0.01, 0.02, 0.03):
+            mach = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
+            found[f"mach_{strain_rate:.0e}_{phi:g}"] = mach
     return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
 
 
@@ -227,8 +231,13 @@ def of_pairs(sets):
     for name, (beside, low, high) in LOOSE.items():
         if {name, beside} <= set(sets):
             found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]
-            for phi in (0.005, 0.01, 0.02, 0.03):
+            same = of_same_clusters([sets[name], sets[beside]])[1]
+            for phi in (0.003, 0.005, 0.01, 0.02, 0.03):
                 if phi * NEAR < sets[name]["phi"].values[-1]:
+                    found[f"{name}.beside_{phi:g}"] = _measured(ratio_at(same, phi))
+                    # looser ones have bins without pressure
+                    if phi < 0.005:
+                        continue
                     ratio = compared(sets[name], sets[beside], phi / NEAR, phi * NEAR)
                     found[f"{name}.over_{phi:g}"] = _several(ratio)[0]
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
