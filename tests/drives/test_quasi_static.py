@@ -17,6 +17,7 @@ from ratd.engine.semi_implicit import semi_implicit
 from ratd.engine.state import monomer_rows
 from ratd.engine.step import run as go_on
 from ratd.engine.step import until
+from ratd.experiments import intervals
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import run as runs
 from ratd.experiments.spin_up.how import STEP
@@ -84,7 +85,7 @@ def test_same_input_same_bits_and_from_a_file(run, grain, tmp_path, monkeypatch)
             raise Killed
 
     path = tmp_path / "checkpoint.npz"
-    monkeypatch.setattr(runs, "CHECKPOINT_INTERVAL", 0.0)
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(runs.Watch, "look", kill)
         with pytest.raises(Killed):
