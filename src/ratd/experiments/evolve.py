@@ -3,8 +3,6 @@
 import numpy as np
 import xarray as xr
 
-from ratd.experiments import intervals
-from ratd.experiments.intervals import Interval
 from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
@@ -15,6 +13,7 @@ from ratd.engine.layout import CONTACTS, DT, RADIUS, STEPS, TIME, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import CALL, STEPS_DONE, run, until
+from ratd.experiments import intervals
 from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws.chosen import law_of
 from ratd.laws.jkr_with_springs import jkr
@@ -161,7 +160,7 @@ def evolve(
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
-    to_save, to_tell = Interval(intervals.CHECKPOINT), Interval(intervals.PROGRESS)
+    to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     begun = state.scalar[TIME]
     while len(rows) <= records:
         goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)

@@ -1,7 +1,7 @@
 """Shaded pictures of spheres, seen from infinitely far away.
 
-Drawn pixel by pixel with a depth buffer: a picture needs no display, no graphics library of the system
-and no graphics card, and its bytes are the same on every machine.
+Drawn pixel by pixel with a depth buffer: a picture needs no display, no graphics library of the system and no graphics
+card, and its bytes are the same on every machine.
 """
 
 import numpy as np

@@ -69,9 +69,8 @@ def test_who_overtakes_whom():
         table[f"dissipated_{way}"] = (("seed_number", "phi_bin"), np.tile(energy, (5, 1)))
     # 6 phi^6 = 1.5 phi^3 0.2^3
     found = strength.overtakes(table, "sliding", "rolling")
-    assert found.value == pytest.approx(0.2 * 0.25 ** (1 / 3), rel=0.01) and found.error == pytest.approx(
-        0.0, abs=1e-12
-    )
+    assert found.value == pytest.approx(0.2 * 0.25 ** (1 / 3), rel=0.01)
+    assert found.error == pytest.approx(0.0, abs=1e-12)
     assert np.isnan(strength.overtakes(table, "rolling", "sliding").value)
     # of clusters that cross at other filling factors
     scale = np.exp(np.random.default_rng(0).normal(0.0, 0.1, 5))[:, None]

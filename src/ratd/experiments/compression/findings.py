@@ -45,8 +45,6 @@ AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
-OTHER_RANGES = ((0.008, 0.04), (0.01, 0.04), (0.012, 0.055), (0.015, 0.05), (0.02, 0.055))
-"""Others of that width, which tell how much the exponent hangs on the choice."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
@@ -104,8 +102,6 @@ def of_set(name, table):
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
     if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
         found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
-        others = [_several(fit_power_law(table, *each))[0].value for each in (LOW_RANGE, *OTHER_RANGES)]
-        found |= {"exponent_least": min(others), "exponent_most": max(others)}
     found["rolling_over_made"] = _measured(overtakes(table, "rolling", "made", found["static"]))
     found["rolling_over_damping"] = _measured(overtakes(table, "rolling", "damping", found["static"]))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):

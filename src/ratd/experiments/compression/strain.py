@@ -6,8 +6,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ratd.experiments import intervals
-from ratd.experiments.intervals import Interval
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.hand_over import hand_over
@@ -15,11 +13,11 @@ from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME
 from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import State, monomer_rows
 from ratd.engine.step import CALL, STEPS_DONE, run, until
+from ratd.experiments import intervals
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
 
 __all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
-
 
 # name -> dimension after `record`, units, meaning
 RECORDS = {
@@ -111,7 +109,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     else:
         state, tables = loaded
         rows, kept = list(tables["rows"]), list(tables["kept"])
-    to_save, to_tell = Interval(intervals.CHECKPOINT), Interval(intervals.PROGRESS)
+    to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     begun = rows[-1][0]
     for number in range(len(rows), len(marks) + 1):
         if stop is not None and stop(np.array(rows)):

@@ -54,19 +54,17 @@ class Fit(NamedTuple):
 
 def of_means(pressure, fit):
     """A `Fit` of ``fit(mean pressure)``, with pressures (seeds, bins), or other numbers of each seed."""
-    n = len(pressure)
-    value = np.atleast_1d(fit(pressure.mean(axis=0)))
+    return of_clusters(len(pressure), lambda own: fit(pressure[own].mean(axis=0)))
+
+
+def of_clusters(n, fit):
+    """A `Fit` of ``fit(own)``, one number or several of the clusters `own` (indices) of n."""
+    every = np.arange(n)
+    value = np.atleast_1d(fit(every))
     if n < 2:
         return Fit(value, np.full(len(value), np.nan), n)
-    left = np.array([np.atleast_1d(fit(np.delete(pressure, k, axis=0).mean(axis=0))) for k in range(n)])
+    left = np.array([np.atleast_1d(fit(np.delete(every, k))) for k in range(n)])
     return Fit(value, np.array([jackknife_error(column) for column in left.T]), n)
-
-
-def of_clusters(n, number):
-    """A `Fit` of ``number(own)``, one number of the clusters `own` (indices) of n."""
-    every = np.arange(n)
-    left = np.array([number(np.delete(every, k)) for k in range(n)]) if n > 1 else np.array([])
-    return Fit(np.array([number(every)]), np.array([jackknife_error(left) if n > 1 else np.nan]), n)
 
 
 def _within(table, low, high):

@@ -251,7 +251,7 @@ def joined(one, other):
         nearest = [int(np.argmin(np.abs(np.log(most / phi)))) for phi in part["snapshot_phi"].values]
         parts[k] = part.assign_coords({SNAPSHOT: nearest}).reindex({PHI: numbers, SNAPSHOT: range(len(most))})
     of_seeds = [name for name in one.variables if SEED in one[name].dims]
-    table = xr.concat([part[of_seeds] for part in parts], SEED).reset_coords(drop=True)
+    table = xr.concat([part[of_seeds] for part in parts], SEED).drop_vars([PHI, SNAPSHOT])
     table = table.isel({SEED: np.argsort(table["seed"].values)})
     for name in one.data_vars:
         if not one[name].dims:
@@ -260,9 +260,7 @@ def joined(one, other):
     table["mean_rolling_energy"] = np.average([each["mean_rolling_energy"] for each in (one, other)], weights=n)
     table["phi"] = (PHI, BIN ** (numbers + 0.5))
     table["snapshot_phi"], table["distance"] = (SNAPSHOT, most), one["distance"]
-    return typed(table.drop_vars([PHI, SNAPSHOT], errors="ignore")).assign_attrs(
-        {name: one.attrs[name] for name in kind_of("compression_set").attributes}
-    )
+    return typed(table).assign_attrs({name: one.attrs[name] for name in kind_of("compression_set").attributes})
 
 
 def typed(table):

@@ -3,8 +3,6 @@
 import numpy as np
 import xarray as xr
 
-from ratd.experiments import intervals
-from ratd.experiments.intervals import Interval
 from ratd.drives.largest import (
     ANGULAR_MOMENTUM, CARRIED, DRAGGED, GREATEST, OMEGA, STRESS_SAMPLES, STRESS_SUM, TORQUE_WORK, energy_of_motion,
 )  # fmt: skip
@@ -13,10 +11,10 @@ from ratd.engine.layout import (
     DT, FRAGMENTS_LOST, LARGEST_CONTACTS, LARGEST_MONOMERS, MASS, MONOMERS, STEPS, TIME, X,
 )  # fmt: skip
 from ratd.engine.state import monomer_rows
+from ratd.experiments import intervals
 from ratd.observables.energy import dissipated, kinetic, stored
 from ratd.observables.pieces import fragment_shape
 from ratd.observables.stress import extreme_normal_force, total_stress
-
 
 # name -> units, meaning, type; in the order of the columns of the records
 RECORDS = {
@@ -147,7 +145,7 @@ class Watch:
 
     def __init__(self, run, progress):
         self.omega_1, self.mass, self.progress = run.motion.omega_1, run.rows[0][2], progress
-        self.to_tell = Interval(intervals.PROGRESS)
+        self.to_tell = intervals.Interval(intervals.PROGRESS)
         self.begun = self._done(run.state.drive[GREATEST])
 
     def _done(self, omega):

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from ratd.experiments import intervals
-from ratd.experiments.intervals import Interval
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.drives.largest import OMEGA, TORQUE_WORK
@@ -15,6 +13,7 @@ from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import copied
 from ratd.engine.step import CALL, FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
+from ratd.experiments import intervals
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.how import DRAG, PACE, TIMESTEP_FACTOR, UNREST, how_to_turn
@@ -136,7 +135,7 @@ def spin_up(
     if not run.load(checkpoint):
         run.begin(relax(grain, law=run.law, timestep_factor=timestep_factor))
     watch = Watch(run, progress)
-    to_save = Interval(intervals.CHECKPOINT)
+    to_save = intervals.Interval(intervals.CHECKPOINT)
     while run.reason is None:
         run.advance()
         if run.reason is None and checkpoint is not None and to_save.passed():
