@@ -30,9 +30,18 @@ def test_both_codes_begin_with_the_same_pressure_and_contacts(rows):
     assert [row["phi"] for row in ours] == pytest.approx([row["phi"] for row in theirs])
     assert ours[0]["n_contacts"] == theirs[0]["n_contacts"] == 63
     # at first the box carries a tree along that bends as little in one as in the other
-    assert theirs[0]["pressure"] == pytest.approx(ours[0]["pressure"], rel=0.3)
+    first = [sum(row["pressure"] for row in each if row["phi"] < 0.03) for each in (ours, theirs)]
+    assert first[1] == pytest.approx(first[0], rel=0.05)
     last = [np.mean([row["n_contacts"] for row in each[-4:]]) for each in (ours, theirs)]
     assert last[1] == pytest.approx(last[0], rel=0.1)
+
+
+def test_loose_clusters_move_alike_in_both_codes(rows):
+    # without the drag -H u LAMMPS has a tenth less
+    kinetic = [
+        sum(row["kinetic"] for row in rows if row["code"] == code and row["phi"] < 0.06) for code in ("ratd", "LAMMPS")
+    ]
+    assert kinetic[1] == pytest.approx(kinetic[0], rel=0.04)
 
 
 def test_rows_make_a_file_of_the_check(rows, tmp_path):

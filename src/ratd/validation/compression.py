@@ -1,8 +1,8 @@
 """The compression against LAMMPS: the same cluster in the same shrinking box, pressure and contacts side by side.
 
 LAMMPS shrinks the box by `fix deform` and carries the spheres along (`remap x`), so that its velocities are those
-relative to the box, as here. The drag -H u of the homogeneous equations is missing there; it acts over a time of
-1/(2 C_v) t_0, in which damping and friction have long taken what moves. What else differs stands in
+relative to the box, as here. It lacks the drag -H u of the homogeneous equations, which `fix viscous` adds: without it
+arms that swing freely have less energy, the more the box has shrunk. What differs stands in
 `ratd.validation.peer_lammps.DIFFERENCES`: the limits of sliding, rolling and twisting grow with the load, and a contact
 ends at the greatest pull. LAMMPS keeps its lists of neighbours, see `ratd.validation.lammps_box`.
 """

@@ -38,11 +38,12 @@ pair_coeff 1 1 {models}
 neighbor {skin} bin
 neigh_modify {lists}
 timestep {timestep}
-compute pressure all pressure NULL virial
+compute pressure all pressure thermo_temp
 compute name all property/local patom1 patom2
 compute vector all pair/local p10 p11 p12
 fix move all nve/sphere
 fix shrink all deform 1 x trate {rate} y trate {rate} z trate {rate} remap x
+fix drag all viscous {drag}
 fix mean all ave/time 1 {window} {window} c_pressure
 thermo 2000000000
 """
@@ -85,7 +86,8 @@ class BoxInLammps:
             self._atoms(name)[:] = value
         lists = _KEPT.format(one=one, page=100 * one) if self._kept else _ANEW
         how = {"models": models, "skin": skin, "lists": lists, "timestep": timestep, "rate": rate, "window": WINDOW}
-        self._say(_SETTINGS.format(**how))
+        # the drag -H u of the homogeneous equations, which LAMMPS lacks
+        self._say(_SETTINGS.format(**how, drag=float(cluster.mass[0]) * rate))
         self._say("run 0 post no")
 
     def __enter__(self):
@@ -105,7 +107,7 @@ class BoxInLammps:
         return round(time / self._timestep / WINDOW) * WINDOW
 
     def advance(self, steps):
-        """Make some steps, and tell the mean pressure in them [Pa], without the motion of the monomers."""
+        """Make some steps, and tell the mean pressure in them [Pa], with that of the motion of the monomers."""
         means = []
         for _ in range(steps // WINDOW):
             # all runs are parts of one, so that the lists stay and the box goes on from where it began
@@ -117,6 +119,7 @@ class BoxInLammps:
     def come_to_rest(self):
         """From now on the box stays; take all velocities and spins away. The springs keep what they hold."""
         self._say("unfix shrink")
+        self._say("unfix drag")
         for name in ("v", "omega"):
             self._atoms(name)[:] = 0.0
 
