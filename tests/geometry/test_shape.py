@@ -10,6 +10,7 @@ from ratd.geometry.shape import (
     enclosing_radius,
     enclosing_sphere,
     fractal_dimension,
+    greatest_extent,
     inertia_tensor,
     mean_coordination,
     porosity,
@@ -119,6 +120,11 @@ def test_enclosing_sphere_of_one_of_two_and_of_one_inside_another():
     np.testing.assert_allclose([*centre, size], [0.0, 0.0, 6.0, 7.0], atol=1e-9)
     centre, size = enclosing_sphere([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]], [5.0, 1.0])
     np.testing.assert_allclose([*centre, size], [0.0, 0.0, 0.0, 5.0], atol=1e-9)
+
+
+def test_greatest_extent_is_that_of_whole_spheres_along_one_axis():
+    assert greatest_extent(np.array([[0.0, 0.0, 0.0], [0.0, 3.0, 2.0]]), np.array([1.0, 0.5])) == 4.5
+    assert greatest_extent(np.zeros((1, 3)), np.array([2.0])) == 4.0
 
 
 def test_enclosing_sphere_of_a_tetrahedron():

@@ -15,6 +15,7 @@ __all__ = [
     "enclosing_radius",
     "enclosing_sphere",
     "fractal_dimension",
+    "greatest_extent",
     "inertia_tensor",
     "mean_coordination",
     "porosity",
@@ -321,6 +322,11 @@ def _touching_sphere(x, a):
 def enclosing_radius(position, radius):
     """Radius [m] of the smallest sphere around an aggregate, a_out of Fig. 1 (see `enclosing_sphere`)."""
     return enclosing_sphere(position, radius)[1]
+
+
+def greatest_extent(position, radius):
+    """Greatest width [m] of an aggregate along x, y or z: the edge of the box in which copies of it touch."""
+    return float(((position + radius[:, None]).max(axis=0) - (position - radius[:, None]).min(axis=0)).max())
 
 
 def fractal_dimension(position, mass):

@@ -17,6 +17,7 @@ from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import Parts, state_of, strain, strain_dataset
 from ratd.experiments.relax import start_anew
 from ratd.geometry.box import periodic
+from ratd.geometry.shape import greatest_extent
 from ratd.laws.contact_constants import rolling_energy
 from ratd.laws.jkr_with_springs import jkr
 from ratd.validation.lammps_box import BoxInLammps
@@ -79,7 +80,7 @@ def _unit(cluster):
 
 def _box(cluster):
     """Edge of the box in which copies of a cluster touch [m], and the filling factor."""
-    length = float((np.ptp(cluster.position, axis=0) + 2.0 * cluster.radius[0]).max())
+    length = greatest_extent(cluster.position, cluster.radius)
     return length, Cluster(cluster).volume / length**3
 
 

@@ -17,6 +17,7 @@ from ratd.experiments.compression.static import box_rate, static_from, time_unit
 from ratd.experiments.compression.steps import LongSteps, integrators
 from ratd.experiments.compression.strain import Parts, strain, strain_dataset
 from ratd.geometry.box import periodic, touching_pairs
+from ratd.geometry.shape import greatest_extent
 from ratd.laws.chosen import check_stiffness, law_of
 from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.structure import radius_of_gyration
@@ -242,15 +243,13 @@ def _positive(name, value):
 def _box(cluster, strain_rate, until_phi, length, scheme):
     """The box at the start, the filling factor in it, and that at the end."""
     position, radius = cluster.grain.position, cluster.grain.radius
-    spread = (position + radius[:, None]).max(axis=0) - (position - radius[:, None]).min(axis=0)
-    if length is None:
-        length = float(spread.max())
-    length = _positive("box_length", length)
+    extent = greatest_extent(position, radius)
+    length = _positive("box_length", extent if length is None else length)
     if length < 2.0 * radius.max():
         raise InputError(f"box_length is {length:g} m; it must be at least {2.0 * radius.max():g} m, a monomer.")
-    if length < (1.0 - 1e-12) * spread.max():
+    if length < (1.0 - 1e-12) * extent:
         raise InputError(
-            f"box_length is {length:g} m; it must be at least {spread.max():g} m, the greatest extent of the cluster, "
+            f"box_length is {length:g} m; it must be at least {extent:g} m, the greatest extent of the cluster, "
             "so that its copies do not overlap."
         )
     first = cluster.volume / length**3
