@@ -56,6 +56,9 @@ def of_curve(table, grown):
         values |= _farthest(table[table["type"] == kind], kind, row)
         bent += [kind] if abs(row["q"]) > CURVED * row["q_error"] else []
     values["curve.rejected"] = " and ".join(bent) or "no type"
+    for name in {name for name, _ in TABLE_3}:
+        values[f"{name} gamma"] = 1e3 * get_material(name).surface_energy
+        values[f"{name} rho"] = get_material(name).density
     material, kind, size = EXAMPLE
     row, own = law.loc[kind], get_material(material)
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
