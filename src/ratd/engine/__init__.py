@@ -20,10 +20,15 @@ prepare(state, law), renew(state, law, work)
     What it needs between two changes of contacts: at the start of a call, and after a change.
 step(state, law, drive, box, scratch, work)
     One step; the number of contacts that have ended.
-limit(state, law, drive, least, work)
-    Shorten or lengthen the step to come by the motion; ``least`` is the least radius [m].
+farthest()
+    How far a monomer may move in one long step [m], by which the lists of near pairs reach farther; 0 for short steps.
+limit(state, law, drive, box, far, least, work)
+    Shorten or lengthen the step to come by the motion; ``far`` holds the pairs that are near, ``least`` is the least
+    radius [m].
 with_smaller_steps(part)
     The same integrator with steps that are smaller by this part.
+
+One field is asked for, `implicit_damping`: whether the normal damping is weakened such that it cannot limit the step.
 
 A run also has a law (`ratd.laws`), a drive (`ratd.drives`) and a box (`ratd.geometry.box`), each chosen by its type.
 docs/model/engine.md tells how they work together.
