@@ -80,10 +80,12 @@ def _edges(first, last):
 
 def _binned(run, edges):
     """Middles, mean pressures, last contacts and last kinetic energies of bins of a run."""
-    phi, last = run["phi_mean"].values, run["phi"].values
-    place = np.clip(np.searchsorted(edges, phi) - 1, 0, len(edges) - 2)
-    number = np.bincount(place, minlength=len(edges) - 1)
-    pressure = np.bincount(place, run["pressure"].values, minlength=len(edges) - 1) / number
+    last = run["phi"].values
+    # ln phi grows evenly in time; a record may lie in two bins
+    end = np.concatenate([[0.0], np.log(last / edges[0])])
+    impulse = np.concatenate([[0.0], np.cumsum(run["pressure"].values * np.diff(end))])
+    bounds = np.minimum(np.log(edges / edges[0]), end[-1])
+    pressure = np.diff(np.interp(bounds, end, impulse)) / np.diff(bounds)
     at = np.clip(np.searchsorted(last, edges[1:] * (1.0 - 1e-9)), 0, len(last) - 1)
     kinetic = (run["kinetic_translation"] + run["kinetic_spin"]).values
     return np.sqrt(edges[1:] * edges[:-1]), pressure, run["n_contacts"].values[at], kinetic[at]
