@@ -6,7 +6,7 @@ import pytest
 
 from peer import need_lammps
 from ratd.aggregates.clusters import grow_bcca
-from ratd.experiments.compression.findings import of_box
+from ratd.experiments.compression.beside_lammps import of_box
 from ratd.experiments.compression.run import Cluster
 from ratd.pipeline import io
 from ratd.validation import box_at_rest

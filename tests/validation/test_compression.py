@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from peer import need_lammps
-from ratd.experiments.compression.findings import of_lammps
+from ratd.experiments.compression.beside_lammps import of_lammps
 from ratd.pipeline import io
 from ratd.validation import compression
 from ratd.validation.tables import as_dataset
@@ -70,6 +70,8 @@ def test_ratios_are_means_over_seeds():
     found = of_lammps(pd.DataFrame(cases))
     # of the mean pressures, (1 + 1)/(2 + 1)
     assert found["lammps.pressure_0.05"].value == pytest.approx(2 / 3)
+    # bins apart by 1 and 0, of 2 and 1
+    assert found["lammps.apart_0.05"].value == pytest.approx(np.sqrt(1 / 5))
     assert found["lammps.n_contacts_0.1"] == pytest.approx((1.05, 0.05))
     assert found["lammps.kinetic_0.03"].value == pytest.approx(1.1)
     assert found["lammps.n"] == 2 and found["lammps.N"] == 64

@@ -14,7 +14,7 @@ SMALL = {
         "high_density": None,
         "monomers": None,
         "fewer_steps": None,
-        "figure4": {"set": "fiducial"},
+        "figure4": {"sets": ["fiducial"]},
         "tension": {"pulls": ["x"]},
     },
 }

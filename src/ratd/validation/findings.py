@@ -9,7 +9,7 @@ from scipy.stats import kstest
 
 from ratd.base.measured import median
 from ratd.base.statistics import median_of
-from ratd.experiments.compression.findings import LAMMPS_EDGES, of_box, of_lammps
+from ratd.experiments.compression.beside_lammps import EDGES, of_box, of_lammps
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -218,14 +218,14 @@ def of_energy(table):
 
 
 def of_compression(table):
-    """Compression beside LAMMPS, see `ratd.experiments.compression.findings.of_lammps`."""
+    """Compression beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_lammps`."""
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
-    within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in LAMMPS_EDGES[:-1])
+    within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in EDGES[:-1])
     return found | {"compression.verdict": _verdict(within)}
 
 
 def of_box_at_rest(table):
-    """Motion in a box at rest over what there can be, see `ratd.experiments.compression.findings.of_box`."""
+    """Motion in a box at rest over what there can be, see `ratd.experiments.compression.beside_lammps.of_box`."""
     found = {name.replace("box.", "box_at_rest."): value for name, value in of_box(table).items()}
     held = max(found["box_at_rest.ratd most"], found["box_at_rest.LAMMPS most"]) < 1.0
     return found | {"box_at_rest.verdict": _verdict(held)}

@@ -50,7 +50,7 @@ def test_a_number_that_changes_flips_the_verdict_on_it(values):
     assert values["line_0.03"] == "below" and values["exponent"] == "above 3"
     fiducial = sets["fiducial"].copy(deep=True)
     fiducial["pressure"] = fiducial["pressure"] * 1.5
-    changed = findings({"fiducial": fiducial}, None, None)
+    changed = findings({"fiducial": fiducial, "n_16384": fiducial}, None, None)
     assert changed["line_0.03"] == "on"
     fiducial["pressure"] = fiducial["pressure"] / fiducial["phi"]
     assert findings({"fiducial": fiducial}, None, None)["exponent"] == "below 3"

@@ -75,7 +75,10 @@ def test_the_steps_go_from_the_config_to_the_run():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"figures": {"figure4": {"set": "x"}}}, "config: compression.figures.figure4 names the set 'x'; allowed: fid"),
+        (
+            {"figures": {"figure4": {"sets": ["x"]}}},
+            "config: compression.figures.figure4 names the set 'x'; allowed: fid",
+        ),
         ({"further_sets": ["x"]}, "config: compression.further_sets names the set 'x'; allowed: fid"),
         (
             {"figures": {"tension": {"pulls": ["y"]}}},

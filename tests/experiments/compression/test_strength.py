@@ -52,6 +52,13 @@ def test_the_filling_factor_at_a_pressure_is_found():
     assert scatter.error == pytest.approx(0.1 / np.sqrt(1000), rel=0.3)
 
 
+def test_from_where_on_the_pressure_is_above_the_line():
+    table = table_of(lambda phi: P_0 * phi**3 * (phi / 0.14) ** 0.5)
+    assert strength.crosses_line(table, 0.3).value == pytest.approx([0.14], rel=1e-3)
+    for factor in (0.5, 2.0):
+        assert np.isnan(strength.crosses_line(table_of(lambda phi, f=factor: f * P_0 * phi**3), 0.3).value)
+
+
 def test_runs_that_begin_later_count_as_nothing_or_not_at_all():
     table = table_of(lambda phi: P_0 * phi**3, seeds=2)
     table["pressure"].values[0, :10] = np.nan

@@ -83,7 +83,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     grains : dict or None
         See `ratd.experiments.compression.findings.spun_up`.
     lammps, box : pandas.DataFrame or None
-        See `ratd.experiments.compression.findings.of_lammps`, and `of_box` there.
+        See `ratd.experiments.compression.beside_lammps`.
     """
     data = Path(data)
     sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
@@ -135,11 +135,8 @@ def draw(name, plan, sets, entries, grains, data):
     if name == "monomers":
         equal, *others = tables
         return module.monomers(equal, others, [name_of(table) for table in others])
-    if "set" in plan.config["figures"][name]:
-        one = {"figure12": "figure4"}.get(name, name)
-        drawn = getattr(import_module(f"ratd.experiments.compression.figures.{one}"), one)
-        return drawn(tables[0])
-    return getattr(module, name)(tables)
+    drawn = getattr(module, name)
+    return drawn(tables[0]) if "set" in plan.config["figures"][name] else drawn(tables)
 
 
 def main(words):

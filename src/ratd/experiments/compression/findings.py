@@ -16,6 +16,7 @@ from ratd.aggregates.strength import (
 )
 from ratd.base.materials import get_material
 from ratd.base.statistics import jackknife_error, mean_of
+from ratd.experiments.compression.beside_lammps import of_box, of_lammps
 from ratd.experiments.compression.figures.tension import in_units
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
@@ -25,9 +26,11 @@ from ratd.experiments.compression.strength import (
     along_axes,
     anisotropy_at,
     compared,
+    crosses_line,
     far_slope_of_structure,
     fit_power_law,
     fit_with_limit,
+    measured,
     of_means,
     of_same_clusters,
     overtakes,
@@ -49,8 +52,6 @@ STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping",
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
-LAMMPS_EDGES = (0.01, 0.02, 0.03, 0.05, 0.1, 0.15)
-"""Filling factors between which LAMMPS is compared."""
 TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
@@ -59,11 +60,13 @@ BY_SIZE = ("n_1024", "fiducial", "n_16384")
 """Sets that differ in the number of monomers, the fewest first."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
-HIGH = "n_1024"
-"""The set that high filling factors are told of; the fiducial one need not go so far."""
+SMALL = "n_1024"
+"""The set of small clusters that go to high filling factors; damping and rolling displacements are varied there."""
+HIGH = "high_16384"
+"""The set that high filling factors are told of."""
 LOOSE = {"slow": ("n_16384", 0.0055, 0.009), "explicit_16384": ("n_16384", 0.008, 0.019)}
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
-BESIDE = {"k_n": HIGH, "xi": HIGH, "steps": "explicit"}
+BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the fiducial set."""
 
 
@@ -86,38 +89,39 @@ def of_set(name, table):
     found |= {"width": Measured(width, spread), "width_6": Measured(width**6, 6.0 * width**5 * spread)}
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
     for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
-        found[f"ratio_{phi:g}"] = _measured(ratio_at(table, phi))
-        found[f"scatter_{phi:g}"] = _measured(scatter_at(table, phi))
+        found[f"ratio_{phi:g}"] = measured(ratio_at(table, phi))
+        found[f"scatter_{phi:g}"] = measured(scatter_at(table, phi))
         k = _bin_at(table, phi)
         contacts = table["n_contacts"].values[:, k] / found["N"]
         found[f"contacts_{phi:g}"] = Measured(*mean_of(contacts[np.isfinite(contacts)]))
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
-        found[f"anisotropy_{phi:g}"] = _measured(anisotropy_at(table, phi))
+        found[f"anisotropy_{phi:g}"] = measured(anisotropy_at(table, phi))
         found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), _several(along_axes(table, phi)), strict=True))
         for way in WAYS:
-            found[f"{way}_{phi:g}"] = _measured(share_at(table, way, phi))
+            found[f"{way}_{phi:g}"] = measured(share_at(table, way, phi))
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
     if last * NEAR > FIT_RANGE[1]:
         exponent, at, ratio = _several(fit_power_law(table))
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
     if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
         found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
-    found["rolling_over_made"] = _measured(overtakes(table, "rolling", "made", found["static"]))
-    found["rolling_over_damping"] = _measured(overtakes(table, "rolling", "damping", found["static"]))
+    found["rolling_over_made"] = measured(overtakes(table, "rolling", "made", found["static"]))
+    found["rolling_over_damping"] = measured(overtakes(table, "rolling", "damping", found["static"]))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
-        found[f"{first}_over_{second}"] = _measured(overtakes(table, first, second))
+        found[f"{first}_over_{second}"] = measured(overtakes(table, first, second))
     part = table["energy_residual"].values / table["work"].values
     for phi in [phi for phi in (0.01, 0.02, 0.03, 0.1, 0.3) if phi < last]:
         found[f"residual_{phi:g}"] = float(np.nanmax(np.abs(part[:, table["phi"].values > phi])))
         found[f"untold_{phi:g}"] = Measured(*mean_of(-part[:, _bin_at(table, phi)]))
     for k, phi in enumerate(table["snapshot_phi"].values):
         nominal = f"{float(f'{phi:.1g}'):g}"
-        found[f"slope_{nominal}"] = _measured(slope_of_structure(table, k))
-        found[f"far_slope_{nominal}"] = _measured(far_slope_of_structure(table, k))
+        found[f"slope_{nominal}"] = measured(slope_of_structure(table, k))
+        found[f"far_slope_{nominal}"] = measured(far_slope_of_structure(table, k))
     if last > 0.4:
         found |= _with_limit(table, min(0.5, last))
     if last > 0.1:
-        found["phi_300"] = _measured(phi_at(table, 300.0, min(0.45, last)))
+        found["phi_300"] = measured(phi_at(table, 300.0, min(0.45, last)))
+        found["crosses"] = measured(crosses_line(table, min(0.3, last)))
     found["line_300"] = float((300.0 / found["P0"]) ** (1.0 / 3.0))
     found["tatsuuma_300"] = _solved(300.0, found["P0"])
     return {f"{name}.{key}": value for key, value in found.items()}
@@ -136,10 +140,6 @@ def _with_limit(table, high):
 def _solved(pressure, rolling_pressure):
     phi = np.linspace(0.01, 0.6, 5000)
     return float(np.interp(pressure, compressive_strength_tatsuuma2023(phi, rolling_pressure), phi))
-
-
-def _measured(fit):
-    return Measured(float(fit.value[0]), float(fit.error[0]))
 
 
 def _several(fit):
@@ -193,7 +193,7 @@ def of_steps(tables):
         for value in STEPS_AT:
             own, other = (_near(each, value) for each in (table, explicit))
             both = np.stack([own, other[same]], axis=1)
-            found[f"{name}.over_pressure_{value:g}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
+            found[f"{name}.over_pressure_{value:g}"] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
         found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
     return found
 
@@ -230,7 +230,7 @@ def of_pairs(sets):
             same = of_same_clusters([sets[name], sets[beside]])[1]
             for phi in (0.003, 0.005, 0.01, 0.02, 0.03):
                 if phi * NEAR < sets[name]["phi"].values[-1]:
-                    found[f"{name}.beside_{phi:g}"] = _measured(ratio_at(same, phi))
+                    found[f"{name}.beside_{phi:g}"] = measured(ratio_at(same, phi))
                     # looser ones have bins without pressure
                     if phi < 0.005:
                         continue
@@ -239,12 +239,22 @@ def of_pairs(sets):
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
                 found[f"{name}.steeper_low"] = _several(compared(sets[name], sets[beside], *LOW_RANGE))[1]
     for name, larger in itertools.pairwise(BY_SIZE):
-        for phi in (0.01, 0.02, 0.03, 0.05):
-            if {name, larger} <= set(sets):
-                own, other = (_measured(ratio_at(sets[each], phi)) for each in (name, larger))
-                ratio = own.value / other.value
-                error = abs(ratio) * math.hypot(own.error / own.value, other.error / other.value)
-                found[f"{name}.over_larger_{phi:g}"] = Measured(ratio, error)
+        if {name, larger} <= set(sets):
+            found |= _by_size(sets, name, larger, (0.01, 0.02, 0.03, 0.05))
+    for larger, every in ((BY_SIZE[-1], (0.03, 0.05)), (HIGH, (0.1, 0.2, 0.3, 0.4, 0.48))):
+        if {SMALL, larger} <= set(sets):
+            found |= _by_size(sets, SMALL, larger, every, "paper_size")
+    return found
+
+
+def _by_size(sets, name, larger, every, word="larger"):
+    """Pressures of a set over those of one of larger clusters."""
+    found = {}
+    for phi in every:
+        own, other = (measured(ratio_at(sets[each], phi)) for each in (name, larger))
+        ratio = own.value / other.value
+        error = abs(ratio) * math.hypot(own.error / own.value, other.error / other.value)
+        found[f"{name}.over_{word}_{phi:g}"] = Measured(ratio, error)
     return found
 
 
@@ -334,67 +344,10 @@ def spun_up(grains, mark="omega_disr"):
     }
 
 
-def of_lammps(table):
-    """What LAMMPS finds over what is found here, of the same clusters, means over bins of phi and seeds.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of the kind ``validation_compression``.
-
-    Returns
-    -------
-    dict
-        ``lammps.pressure_LOW``, ``lammps.kinetic_LOW`` and ``lammps.n_contacts_LOW`` for the bins between
-        `LAMMPS_EDGES`; ``lammps.n``, ``lammps.N`` and ``lammps.rate``.
-    """
-    found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
-    found["lammps.rate"] = float(table["strain_rate"].iloc[0])
-    for low, high in itertools.pairwise(LAMMPS_EDGES):
-        part = table[(table["phi"] > low) & (table["phi"] < high)]
-        over = part.assign(pressure=part["pressure"] / part["line"])
-        mean = over.groupby(["seed", "code"])[["pressure", "kinetic", "n_contacts"]].mean().unstack("code")
-        for name in ("pressure", "kinetic"):
-            both = mean[name][["LAMMPS", "ratd"]].to_numpy()
-            found[f"lammps.{name}_{low:g}"] = _measured(of_means(both, lambda mean: mean[0] / mean[1]))
-        ratio = mean["n_contacts"]["LAMMPS"] / mean["n_contacts"]["ratd"]
-        found[f"lammps.n_contacts_{low:g}"] = Measured(*mean_of(ratio.to_numpy()))
-    return found
-
-
-def of_box(table):
-    """Motion in a box that stays, over all the energy that there is when it comes to rest.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of the kind ``validation_box_at_rest``.
-
-    Returns
-    -------
-    dict
-        ``box.CODE least`` and ``most`` over the seeds: the greatest kinetic energy of each over kinetic + springs of
-        ratd. ``box.gap``: how far ratd is from closing the balance, over the same. ``box.apart``: the greatest
-        difference of the kinetic energies of ratd and of LAMMPS with kept lists, over the same. ``box.n``, ``box.N``.
-    """
-    ours = table[table["code"] == "ratd"]
-    all_there_is = (ours["kinetic"] + ours["springs"]).groupby(ours["seed"]).first()
-    found = {"box.n": table["seed"].nunique(), "box.N": int(table["n_monomers"].iloc[0])}
-    for code, part in table.groupby("code"):
-        ratio = part.groupby("seed")["kinetic"].max() / all_there_is
-        found |= {f"box.{code} least": float(ratio.min()), f"box.{code} most": float(ratio.max())}
-    found["box.gap"] = float((ours["gap"].abs().groupby(ours["seed"]).max() / all_there_is).max())
-    # by number: a record of ratd ends with the step that passes its time
-    record = table.groupby(["seed", "code"]).cumcount()
-    wide = table.assign(record=record).pivot_table(index=["seed", "record"], columns="code", values="kinetic")
-    apart = (wide["LAMMPS"] - wide["ratd"]).abs().groupby("seed").max() / all_there_is
-    return found | {"box.apart": float(apart.max())}
-
-
 def verdicts(values, sets):
     """Words on which sentences of the document rest."""
     found = {}
-    for name, phi in (("fiducial", 0.01), ("fiducial", 0.03), ("fiducial", 0.05), ("fiducial", 0.1), (HIGH, 0.3)):
+    for name, phi in ((BY_SIZE[-1], 0.03), (HIGH, 0.1), (HIGH, 0.3)):
         if f"{name}.ratio_{phi:g}" in values:
             ratio = values[f"{name}.ratio_{phi:g}"].value
             found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
@@ -440,9 +393,9 @@ def findings(sets, entries, spun, lammps=None, box=None):
     spun : dict or None
         From `spun_up`.
     lammps : pandas.DataFrame, optional
-        See `of_lammps`.
+        See `ratd.experiments.compression.beside_lammps.of_lammps`.
     box : pandas.DataFrame, optional
-        See `of_box`.
+        See `ratd.experiments.compression.beside_lammps.of_box`.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
@@ -456,12 +409,12 @@ def findings(sets, entries, spun, lammps=None, box=None):
         values |= of_steps(
             {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}
         )
-    if {HIGH, "xi_2", "xi_32"} <= set(sets):
-        for name, times in ((HIGH, 4.0), ("xi_32", 16.0)):
+    if {SMALL, "xi_2", "xi_32"} <= set(sets):
+        for name, times in ((SMALL, 4.0), ("xi_32", 16.0)):
             own, least = values[f"{name}.ratio_0.48"], values["xi_2.ratio_0.48"]
             ratio = times * own.value / least.value
             parts = own.error / own.value, least.error / least.value
-            values[f"xi_p48_{'8' if name == HIGH else '32'}"] = Measured(ratio, ratio * math.hypot(*parts))
+            values[f"xi_p48_{'8' if name == SMALL else '32'}"] = Measured(ratio, ratio * math.hypot(*parts))
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )

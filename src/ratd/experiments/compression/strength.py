@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ratd.base.errors import InputError
+from ratd.base.measured import Measured
 from ratd.base.statistics import jackknife_error
 from ratd.experiments.compression.tables import BIN, bins, in_bins
 from ratd.observables.energy import DISSIPATED
@@ -15,9 +16,11 @@ __all__ = [
     "Fit",
     "anisotropy",
     "compressive_strength",
+    "crosses_line",
     "fit_power_law",
     "fit_with_limit",
     "mean_pressure",
+    "measured",
     "of_means",
     "of_same_clusters",
     "phi_at",
@@ -50,6 +53,11 @@ class Fit(NamedTuple):
     value: np.ndarray
     error: np.ndarray
     n: int
+
+
+def measured(fit):
+    """The first number of a `Fit` with its error."""
+    return Measured(float(fit.value[0]), float(fit.error[0]))
 
 
 def of_means(pressure, fit):
@@ -176,6 +184,24 @@ def phi_at(table, pressure, high=0.45):
         return np.exp(np.interp(np.log(pressure), np.log(rising), np.log(phi)))
 
     return of_means(all_pressures, fit)
+
+
+def crosses_line(table, high):
+    """Filling factor between 0.05 and `high` from which on the mean pressure is above P_0 phi^3, `Fit` of one number.
+
+    NaN where it is above or below all the way.
+    """
+    phi, pressure = _within(table, 0.05, high)
+    ratio = pressure / table["rolling_pressure"].values[0] / phi**3
+
+    def fit(mean):
+        below = np.flatnonzero(mean <= 1.0)
+        if not len(below) or below[-1] == len(phi) - 1:
+            return np.nan
+        pair = slice(below[-1], below[-1] + 2)
+        return np.exp(np.interp(1.0, mean[pair], np.log(phi[pair])))
+
+    return of_means(ratio, fit)
 
 
 def rates(table, ways, own=slice(None)):

@@ -39,7 +39,7 @@ def panels(tables, texts, title):
 @styled
 def figure8(tables):
     """Energy dissipated by each way, sets with different k_n below each other."""
-    texts = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}" for table in tables]
+    texts = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}, N = {table['n_monomers'].item()}" for table in tables]
     return panels(tables, texts, f"{tables[0].attrs['material']}: energy dissipated, {strain_text(tables[0])}")
 
 

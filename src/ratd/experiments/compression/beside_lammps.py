@@ -1,0 +1,77 @@
+"""Numbers of the comparison with LAMMPS: compressions of the same clusters, and clusters in a box at rest."""
+
+import itertools
+
+import numpy as np
+import pandas as pd
+
+from ratd.base.measured import Measured
+from ratd.base.statistics import mean_of
+from ratd.experiments.compression.strength import measured, of_means
+
+__all__ = ["EDGES", "of_box", "of_lammps"]
+
+EDGES = (0.01, 0.02, 0.03, 0.05, 0.1, 0.15)
+"""Filling factors between which the pressures are compared."""
+
+
+def of_lammps(table):
+    """What LAMMPS finds over what is found here, of the same clusters, means over bins of phi and seeds.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_compression``.
+
+    Returns
+    -------
+    dict
+        ``lammps.pressure_LOW``, ``lammps.kinetic_LOW`` and ``lammps.n_contacts_LOW`` for the bins between
+        `EDGES`, and ``lammps.apart_LOW``, the root mean square of the differences of the pressures of single
+        bins over that of the pressures; ``lammps.n``, ``lammps.N`` and ``lammps.rate``.
+    """
+    found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
+    found["lammps.rate"] = float(table["strain_rate"].iloc[0])
+    for low, high in itertools.pairwise(EDGES):
+        part = table[(table["phi"] > low) & (table["phi"] < high)]
+        over = part.assign(pressure=part["pressure"] / part["line"])
+        mean = over.groupby(["seed", "code"])[["pressure", "kinetic", "n_contacts"]].mean().unstack("code")
+        for name in ("pressure", "kinetic"):
+            both = mean[name][["LAMMPS", "ratd"]].to_numpy()
+            found[f"lammps.{name}_{low:g}"] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
+        bins = over.pivot_table(index=["seed", "phi"], columns="code", values="pressure")
+        squares = pd.DataFrame({"difference": (bins["LAMMPS"] - bins["ratd"]) ** 2, "ratd": bins["ratd"] ** 2})
+        squares = squares.groupby("seed").sum().to_numpy()
+        found[f"lammps.apart_{low:g}"] = measured(of_means(squares, lambda mean: np.sqrt(mean[0] / mean[1])))
+        ratio = mean["n_contacts"]["LAMMPS"] / mean["n_contacts"]["ratd"]
+        found[f"lammps.n_contacts_{low:g}"] = Measured(*mean_of(ratio.to_numpy()))
+    return found
+
+
+def of_box(table):
+    """Motion in a box that stays, over all the energy that there is when it comes to rest.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_box_at_rest``.
+
+    Returns
+    -------
+    dict
+        ``box.CODE least`` and ``most`` over the seeds: the greatest kinetic energy of each over kinetic + springs of
+        ratd. ``box.gap``: how far ratd is from closing the balance, over the same. ``box.apart``: the greatest
+        difference of the kinetic energies of ratd and of LAMMPS with kept lists, over the same. ``box.n``, ``box.N``.
+    """
+    ours = table[table["code"] == "ratd"]
+    all_there_is = (ours["kinetic"] + ours["springs"]).groupby(ours["seed"]).first()
+    found = {"box.n": table["seed"].nunique(), "box.N": int(table["n_monomers"].iloc[0])}
+    for code, part in table.groupby("code"):
+        ratio = part.groupby("seed")["kinetic"].max() / all_there_is
+        found |= {f"box.{code} least": float(ratio.min()), f"box.{code} most": float(ratio.max())}
+    found["box.gap"] = float((ours["gap"].abs().groupby(ours["seed"]).max() / all_there_is).max())
+    # by number: a record of ratd ends with the step that passes its time
+    record = table.groupby(["seed", "code"]).cumcount()
+    wide = table.assign(record=record).pivot_table(index=["seed", "record"], columns="code", values="kinetic")
+    apart = (wide["LAMMPS"] - wide["ratd"]).abs().groupby("seed").max() / all_there_is
+    return found | {"box.apart": float(apart.max())}
