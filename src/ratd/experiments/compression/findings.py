@@ -44,7 +44,7 @@ from ratd.base.measured import Measured, median
 
 __all__ = ["findings", "spun_up"]
 
-AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.48)
+AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
@@ -80,6 +80,8 @@ def of_set(name, table):
     found["E_roll"] = found["P0"] * table["monomer_radius"].item() ** 3
     found["t_0"] = table["time_unit"].item()
     found["start"] = float(np.mean(table["phi_start"].values))
+    # a run can be static from the start
+    found["static_seen"] = max(found["static"], found["start"])
     gyration, error = table["mean_square_gyration"].item(), table["mean_square_gyration_error"].item()
     root = math.sqrt(gyration)
     r_0 = table["monomer_radius"].item()

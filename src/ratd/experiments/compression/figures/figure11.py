@@ -18,7 +18,8 @@ def figure11(table, wanted=(0.003, 0.01, 0.03, 0.1)):
         numbers = numbers[np.isfinite(numbers[:, 0])].mean(axis=0)
         label = rf"$\phi$ = {phi:g}"
         axes.plot(distance, numbers, color=COLOURS[k], ls=DASHES[k], label=label)
-        axes.plot(distance, found[at] * distance**3, color=COLOURS[k], lw=0.5)
+        uniform = "thin: uniform density" if k == len(wanted) - 1 else None
+        axes.plot(distance, found[at] * distance**3, color=COLOURS[k], lw=0.5, label=uniform)
     axes.plot(distance, 0.75 * distance**2, color=GREY, lw=0.8, label=r"$\propto r^2$")
     n = table["n_monomers"].item()
     axes.axhline(n, color="black", lw=0.6, ls=":")
