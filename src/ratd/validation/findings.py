@@ -53,8 +53,10 @@ REFERENCE = 2e-3
 """Distance from the spheres of the reference over their way; the same of energies."""
 KEPT = 1e-3
 """Error of the energy over the kinetic energy, at `TIMESTEP_FACTOR`."""
-CONTACTS = 0.1
+CONTACTS = 0.02
 """What the number of contacts in LAMMPS may differ by in a compression, in the mean of its clusters."""
+PRESSED = 0.03
+"""... and the mean pressure up to phi = 0.03, where no limit of LAMMPS follows the load yet."""
 CLOSED = {"compression": 5e-3, "long steps": 5e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
 SHIFTED = 0.01
@@ -71,7 +73,7 @@ def limits():
     found = {
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
-        "contacts": CONTACTS,
+        "contacts": CONTACTS, "pressed": PRESSED,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
@@ -221,7 +223,8 @@ def of_compression(table):
     """Compression beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_lammps`."""
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
     within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in EDGES[:-1])
-    return found | {"compression.verdict": _verdict(within)}
+    alike = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < PRESSED for low in EDGES[:2])
+    return found | {"compression.verdict": _verdict(within), "compression.pressure verdict": _verdict(alike)}
 
 
 def of_box_at_rest(table):
