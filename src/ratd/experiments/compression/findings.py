@@ -15,6 +15,7 @@ from ratd.aggregates.strength import (
     sound_speed_kataoka2013,
 )
 from ratd.base.materials import get_material
+from ratd.base.measured import Measured, median
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_lammps
 from ratd.experiments.compression.figures.tension import in_units
@@ -40,7 +41,6 @@ from ratd.experiments.compression.strength import (
     share_at,
     slope_of_structure,
 )
-from ratd.base.measured import Measured, median
 
 __all__ = ["findings", "spun_up"]
 
@@ -243,9 +243,8 @@ def of_pairs(sets):
     for name, larger in itertools.pairwise(BY_SIZE):
         if {name, larger} <= set(sets):
             found |= _by_size(sets, name, larger, (0.01, 0.02, 0.03, 0.05))
-    for larger, every in ((BY_SIZE[-1], (0.03, 0.05)), (HIGH, (0.1, 0.2, 0.3, 0.4, 0.48))):
-        if {SMALL, larger} <= set(sets):
-            found |= _by_size(sets, SMALL, larger, every, "paper_size")
+    if {SMALL, HIGH} <= set(sets):
+        found |= _by_size(sets, SMALL, HIGH, (0.2, 0.3, 0.48), "paper_size")
     return found
 
 
