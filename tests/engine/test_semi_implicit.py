@@ -93,7 +93,7 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts(angle):
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     pulls = rng.normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    weigh(state, 0.0, dt, work)
+    weigh(state, 0.0, dt, dt, work)
     expected = np.linalg.solve(dense_matrix(state, theta, dt), pulls.ravel()).reshape(N, 6)
     np.testing.assert_allclose(force[:, 0:3] / rows[:, MASS, None], expected[:, :3], rtol=1e-7)
     inertia = 0.4 * rows[:, MASS] * rows[:, RADIUS] ** 2
@@ -112,7 +112,7 @@ def test_rigid_motion_has_its_true_mass_and_is_not_calmed(angle):
     rows[:, WX : WX + 3] = turn
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     force[:] = 0.0
-    weigh(state, 1e9, 1e-10, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
+    weigh(state, 1e9, 1e-10, 1e-10, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
 
@@ -127,7 +127,7 @@ def test_rigid_motion_is_not_calmed_in_a_box_that_changes(rate):
     rows[:, VX : VX + 3] = -np.array(box.rates()) * rows[:, X : X + 3]  # peculiar: at rest in space
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     force[:] = 0.0
-    weigh(state, 1e9, 1e-10, work)
+    weigh(state, 1e9, 1e-10, 1e-10, work)
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
     assert (np.abs(force[:, 4:7]) < 1e-8 * limit * rows[:, RADIUS, None]).all()
@@ -239,7 +239,7 @@ def weighed(state, work):
     force[:] = 0.0
     pulls = np.random.default_rng(3).normal(size=(2 * N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    weigh(state, 0.0, 3e-11, work)
+    weigh(state, 0.0, 3e-11, 3e-11, work)
     return force.copy()
 
 
@@ -290,5 +290,5 @@ def test_a_monomer_that_touches_its_own_copy_is_weighed_too():
     # both surfaces move against each other by w times the distance of the centres
     slow = inertia + 0.5 * dt**2 * k_s * (1.99 * radius) ** 2
     state.force[4:7] = 1e-20
-    weigh(state, 0.0, dt, work)
+    weigh(state, 0.0, dt, dt, work)
     np.testing.assert_allclose(state.force[4:7], 1e-20 * inertia / np.array([inertia, slow, slow]), rtol=1e-9)

@@ -160,11 +160,11 @@ def count_touching(state, box, near, count):
 
 @jit
 def time_to_overlap(state, box, far, overlap):
-    """Shortest time [s] in which a pair of the far list, now apart, comes to overlap by `overlap` [m] as it moves."""
+    """Shortest times [s] in which a pair of the far list, now apart, comes to touch and to overlap by `overlap` [m]."""
     edges = box.edges(state.scalar)
     hx, hy, hz = box.rates()
     monomer = state.monomer
-    soonest = np.inf
+    touch, deep = np.inf, np.inf
     for p in range(far.shape[0]):
         i, j = far[p, 0], far[p, 1]
         dx, dy, dz, distance = difference(state, edges, i, j, (far[p, 2], far[p, 3], far[p, 4]))
@@ -175,8 +175,9 @@ def time_to_overlap(state, box, far, overlap):
         vz = monomer[ri + VZ] - monomer[rj + VZ] + hz * dz
         closing = -(vx * dx + vy * dy + vz * dz)
         if apart > 0.0 and closing > 0.0:
-            soonest = min(soonest, (apart + overlap) * distance / closing)
-    return soonest
+            touch = min(touch, apart * distance / closing)
+            deep = min(deep, (apart + overlap) * distance / closing)
+    return touch, deep
 
 
 @jit

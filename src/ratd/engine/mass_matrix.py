@@ -221,18 +221,33 @@ def _cross(a, b):
 
 
 @jit
-def weigh(state, rate, kick, work):
+def weigh(state, rate, last, dt, work):
     """Turn the forces F into M (M'^-1 (F + rate (M v - s)) - rate v), which moves monomers of true mass as M' says.
 
     The terms with the rate [1/s] take stiff motion away and leave soft motion, for which M'^-1 (M v - s) is v. s is the
     `strain` of the box.
 
+    Parameters
+    ----------
+    state : State
+    rate : float
+    last, dt : float
+        Durations of the last move and of the next one [s]; the kick between them is their mean.
+    work : Work
+
     Returns
     -------
     float
-        Work of the forces in the kick to come, of this duration [s], less that of what they are turned into [J]: it is
-        missing in the motion, and counts as damped.
+        Work of the forces along half of both moves less that of what they are turned into [J]: it is missing in the
+        motion, and counts as damped.
+
+    Notes
+    -----
+    With F(x) linear in x, potential energy changes by -(F + F')/2 dx in a move between the forces F and F'. So to F
+    belongs F (v last + v' dt)/2, where v' = v + kick rise. That is kick F (v + v')/2, which the kinetic energy goes
+    with, and (dt - last)/4 F (v' - v), which would be lost untold where a step is longer than the last one.
     """
+    kick, longer = 0.5 * (last + dt), 0.25 * (dt - last)
     monomer, force, x, strain = state.monomer, state.force, work.x, work.strain
     place = work.factor.place
     n = state.counter[MONOMERS]
@@ -264,8 +279,9 @@ def weigh(state, rate, kick, work):
             v, w = monomer[r + VX + a], monomer[r + WX + a]
             rise = x[to + axis] - rate * v
             turn = (x[to + 3 + axis] - rate * radius * w) * inv
-            taken += (force[q + FORCE_X + a] - m * rise) * (v + 0.5 * kick * rise)
-            taken += (force[q + TORQUE_X + a] - spin * radius * turn) * (w + 0.5 * kick * turn)
+            pull, twist = force[q + FORCE_X + a], force[q + TORQUE_X + a]
+            taken += (pull - m * rise) * (v + 0.5 * kick * rise) + longer * pull * rise
+            taken += (twist - spin * radius * turn) * (w + 0.5 * kick * turn) + longer * twist * turn
             force[q + FORCE_X + a] = m * rise
             force[q + TORQUE_X + a] = spin * radius * turn
     return kick * taken

@@ -28,6 +28,9 @@ class LongSteps(NamedTuple):
         rolling displacement is small it allows less, see `ROLLED`.
     calming : float
         See `ratd.engine.semi_implicit.semi_implicit`.
+    landing : float
+        The longest step over t_0 where two monomers meet, see there. The default is about that of an explicit step, and
+        keeps the balance of energy to some 0.05 % of the work at a filling factor of 0.1.
     until_phi : float
         Filling factor from which on the explicit step takes over. There each monomer touches several others, and the
         matrix of a long step costs more than it saves.
@@ -36,6 +39,7 @@ class LongSteps(NamedTuple):
     longest: float = 30.0
     displacement: float = 0.5
     calming: float = 0.1
+    landing: float = 0.2
     until_phi: float = 0.2
 
 
@@ -67,7 +71,7 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
         return explicit, explicit
     if not isinstance(long_steps, LongSteps):
         raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
-    for name in ("longest", "displacement", "until_phi"):
+    for name in ("longest", "displacement", "landing", "until_phi"):
         value = getattr(long_steps, name)
         if not (is_number(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
@@ -75,4 +79,4 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
     displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
     longest = long_steps.longest * time_unit
     how = {"displacement": displacement, "travel": displacement, "calming": long_steps.calming}
-    return semi_implicit(longest=longest, **how), explicit
+    return semi_implicit(longest=longest, landing=long_steps.landing * time_unit, **how), explicit
