@@ -16,7 +16,7 @@ from ratd.geometry.box import open_space, periodic, touching_pairs
 from ratd.laws import jkr
 from ratd.laws.contact_fields import LANES, NCX, NCY, NCZ
 from ratd.laws.jkr_with_springs import NIX, NJX
-from ratd.observables.energy import kinetic, momenta
+from ratd.observables.energy import DISSIPATED, dissipated, in_step, kinetic, momenta, stored
 from systems import tree
 
 N = 12
@@ -98,6 +98,25 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts(angle):
     np.testing.assert_allclose(force[:, 0:3] / rows[:, MASS, None], expected[:, :3], rtol=1e-7)
     inertia = 0.4 * rows[:, MASS] * rows[:, RADIUS] ** 2
     np.testing.assert_allclose(force[:, 4:7] / inertia[:, None], expected[:, 3:], rtol=1e-7)
+
+
+def test_what_the_step_takes_is_the_work_of_the_forces_less_that_of_the_motion():
+    """The work of the forces along half of the last move and half of the next, against the change of kinetic energy."""
+    state = cluster(0.5)
+    last, dt = 2e-11, 7e-11
+    work = _work(state)
+    make_matrix(state, LAW, BOX, 0.5, dt, work)
+    rows = monomer_rows(state)
+    force = state.force.reshape(-1, FORCE_ROW)[:N]
+    pulls = np.random.default_rng(3).normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
+    force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
+    taken = weigh(state, 0.0, last, dt, work)
+    mass = np.repeat(rows[:, [MASS, MASS]] * np.array([1.0, 0.4]) * rows[:, [RADIUS, RADIUS]] ** [0, 2], 3, axis=1)
+    before = np.hstack([rows[:, VX : VX + 3], rows[:, WX : WX + 3]])
+    after = before + 0.5 * (last + dt) * np.hstack([force[:, 0:3], force[:, 4:7]]) / mass
+    gained = 0.5 * np.sum(mass * (after**2 - before**2))
+    assert taken == pytest.approx(np.sum(pulls * 0.5 * (before * last + after * dt)) - gained, rel=1e-9)
+    assert taken > 0.0
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.2])
@@ -195,7 +214,13 @@ def test_steps_are_rungs_of_a_ladder():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "words"), [({"longest": 0.0}, "longest is 0.0"), ({"theta": 0.1}, "theta"), ({"calming": 1.0}, "calming")]
+    ("wrong", "words"),
+    [
+        ({"longest": 0.0}, "longest is 0.0"),
+        ({"theta": 0.1}, "theta"),
+        ({"calming": 1.0}, "calming"),
+        ({"landing": 0.0}, "landing is 0.0"),
+    ],
 )
 def test_bad_options_get_a_sentence(wrong, words):
     with pytest.raises(InputError, match=words):
@@ -219,6 +244,29 @@ def test_spheres_land_with_a_small_overlap(gap):
     assert (np.array(overlap[:-1]) < 0.0).all() and 0.0 < overlap[-1] <= 2.001e-10
     state, _ = run(state, LAW, free(), BOX, integrator, until(steps=int(state.counter[0]) + 1))
     assert state.scalar[DT] * 3.0 < 3e-10
+
+
+@pytest.mark.parametrize("gap", [5e-11, 2e-10, 3e-10, 4.1e-10])
+def test_the_fall_into_a_new_contact_keeps_the_balance_of_energy(gap):
+    """In short steps, and not in long ones; of two ice spheres of a compression that slowly meet."""
+    law, radius, t_0 = jkr(damping="constant", constant_damping=0.01), 1e-7, 1.94e-10
+    position = np.array([[radius + 0.5 * gap, 0.0, 0.0], [-radius - 0.5 * gap, 0.0, 0.0]])
+    velocity = np.array([[-2.5e-3, 0.0, 0.0], [2.5e-3, 0.0, 0.0]])
+    missing = []
+    for landing in (0.2 * t_0, np.inf):
+        integrator = semi_implicit(
+            longest=30 * t_0, displacement=5e-11, travel=5e-11, calming=0.1, landing=landing
+        )  # fmt: skip
+        sizes = np.full(2, radius), MATERIALS["ice"], []
+        state = new_state(position, *sizes, law, BOX, integrator, velocity=velocity)
+        before = sum(kinetic(state, 0.0, False))
+        state, _ = run(state, law, free(), BOX, integrator, until(time=2e-7))
+        now = in_step(state, law, BOX, kick=False)
+        gone = dissipated(now, law)
+        total = sum(kinetic(now, 0.0, False)) + stored(now, law, False).sum() + gone.sum()
+        missing.append(abs(total - before) / gone[DISSIPATED.index("made")])
+    assert missing[0] < 2e-3, missing
+    assert missing[1] > 1e-2, missing
 
 
 def two_clusters():
