@@ -48,12 +48,12 @@ def test_a_sentence_that_no_longer_holds_is_an_error(values):
 def test_a_number_that_changes_flips_the_verdict_on_it(values):
     sets, *_ = document.read_data()
     assert values["line_0.03"] == "below" and values["exponent"] == "above 3"
-    fiducial = sets["fiducial"].copy(deep=True)
-    fiducial["pressure"] = fiducial["pressure"] * 1.5
-    changed = findings({"fiducial": fiducial, "n_16384": fiducial}, None, None)
+    base = sets["base"].copy(deep=True)
+    base["pressure"] = base["pressure"] * 1.5
+    changed = findings({"base": base, "n_16384": base}, None, None)
     assert changed["line_0.03"] == "on"
-    fiducial["pressure"] = fiducial["pressure"] / fiducial["phi"]
-    assert findings({"fiducial": fiducial}, None, None)["exponent"] == "below 3"
+    base["pressure"] = base["pressure"] / base["phi"]
+    assert findings({"base": base}, None, None)["exponent"] == "below 3"
 
 
 def test_it_lies_where_an_independent_code_finds_it(values):
@@ -66,7 +66,7 @@ def test_it_lies_where_an_independent_code_finds_it(values):
 
 
 def test_missing_data_are_one_sentence(tmp_path):
-    with pytest.raises(ratd.FileError, match="holds no fiducial.nc"):
+    with pytest.raises(ratd.FileError, match="holds no base.nc"):
         document.read_data(tmp_path)
     with pytest.raises(ratd.FileError, match="holds no tables of the compression"):
         document.collect(tmp_path)
@@ -107,4 +107,4 @@ def test_parts_without_data_are_left_out():
     assert fill(text, {"y.n": 2.0}) == "a\nd\n"
     with pytest.raises(ratd.InputError, match="an 'if' without an 'end'"):
         fill("<!-- if x -->\n", {"x.n": Measured(1.0)})
-    assert Path("docs/compression/data/sets/fiducial.nc").is_file()
+    assert Path("docs/compression/data/sets/base.nc").is_file()

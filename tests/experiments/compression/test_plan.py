@@ -39,7 +39,7 @@ def test_the_large_config_adds_to_the_default_one():
 def test_the_paper_is_as_printed():
     plan = plan_of()
     assert set(plan.figures) == set(plans.FIGURES)
-    assert plan.of_set("fiducial")["strain_rate"] == 3e-7 and plan.seeds("fiducial") == list(range(10))
+    assert plan.of_set("base")["strain_rate"] == 3e-7 and plan.seeds("base") == list(range(10))
     assert plan.compress("k_n_10")["k_n"] == 10
     assert plan.grow("xi_2")["material"]["critical_rolling_displacement"] == pytest.approx(2e-10)
     mrn = {"law": "mrn", "smallest": pytest.approx(5e-8), "largest": pytest.approx(4e-7)}
@@ -48,13 +48,13 @@ def test_the_paper_is_as_printed():
 
 
 def test_only_the_sets_that_are_named_are_wanted():
-    figures = dict.fromkeys(plans.FIGURES) | {"figure5": {"sets": ["rate_1e-5", "fiducial"]}}
+    figures = dict.fromkeys(plans.FIGURES) | {"figure5": {"sets": ["rate_1e-5", "base"]}}
     plan = plan_of(figures=figures, further_sets=[])
-    assert plan.sets == ["rate_1e-5", "fiducial"] and plan.figures == ["figure5"]
+    assert plan.sets == ["rate_1e-5", "base"] and plan.figures == ["figure5"]
     further = plan_of(figures=figures, further_sets=["silicate"])
     assert further.sets == [*plan.sets, "silicate"]
     assert set(further.tables) - set(plan.tables) == {plans.TABLE.format(set="silicate")}
-    assert plan.tables == ["<results>/compression/rate_1e-5.nc", "<results>/compression/fiducial.nc"]
+    assert plan.tables == ["<results>/compression/rate_1e-5.nc", "<results>/compression/base.nc"]
     # clusters that are pulled need no compression of their own
     figures = dict.fromkeys(plans.FIGURES) | {"tension": {"pulls": ["x"]}}
     assert all("/tension/" in path for path in plan_of(figures=figures, further_sets=[]).tables)
@@ -65,7 +65,7 @@ def test_the_steps_go_from_the_config_to_the_run():
     grain = ratd.grow_bcca(64, seed=0)
     said = {}
     for name, own in (("long", steps), ("explicit", None)):
-        settings = plan_of(all_sets={"long_steps": own, "until_phi": 0.05, "strain_rate": 3e-5}).compress("fiducial")
+        settings = plan_of(all_sets={"long_steps": own, "until_phi": 0.05, "strain_rate": 3e-5}).compress("base")
         said[name] = squeezed(grain, settings).attrs["integrator"]
     long, then = said["long"].split(", from phi = 0.03 on ")
     assert long.startswith("SemiImplicit(") and f"longest={3 * Cluster(grain).time_unit!r}" in long
@@ -77,19 +77,19 @@ def test_the_steps_go_from_the_config_to_the_run():
     [
         (
             {"figures": {"figure4": {"sets": ["x"]}}},
-            "config: compression.figures.figure4 names the set 'x'; allowed: fid",
+            "config: compression.figures.figure4 names the set 'x'; allowed: base",
         ),
-        ({"further_sets": ["x"]}, "config: compression.further_sets names the set 'x'; allowed: fid"),
+        ({"further_sets": ["x"]}, "config: compression.further_sets names the set 'x'; allowed: base"),
         (
             {"figures": {"tension": {"pulls": ["y"]}}},
             "config: compression.figures.tension names the pull 'y'; all",
         ),
         ({"all_sets": {"n": 1000}}, "config: compression.all_sets.n is 1000; allowed: a power of 2 from 2"),
         ({"all_sets": {"strain_rate": 0}}, "compression.all_sets.strain_rate is 0; allowed: a number above 0"),
-        ({"sets": {"fiducial": {"material": "x"}}}, "compression.sets.fiducial.material is 'x'; allowed: a-C"),
-        ({"sets": {"fiducial": {"material": "q-S"}}}, "compression.sets.fiducial.radius_nm is null; allowed: a number"),
-        ({"sets": {"fiducial": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),
-        ({"sets": {"fiducial": {"speed": 1}}}, "the key 'speed' in compression.sets.fiducial is unknown"),
+        ({"sets": {"base": {"material": "x"}}}, "compression.sets.base.material is 'x'; allowed: a-C"),
+        ({"sets": {"base": {"material": "q-S"}}}, "compression.sets.base.radius_nm is null; allowed: a number"),
+        ({"sets": {"base": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),
+        ({"sets": {"base": {"speed": 1}}}, "the key 'speed' in compression.sets.base is unknown"),
     ],
 )
 def test_a_wrong_config_is_one_sentence(change, said):

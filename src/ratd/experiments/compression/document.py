@@ -87,8 +87,8 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     """
     data = Path(data)
     sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
-    if "fiducial" not in sets:
-        raise FileError(f"{data / 'sets'}: holds no fiducial.nc, which all sets are compared with")
+    if "base" not in sets:
+        raise FileError(f"{data / 'sets'}: holds no base.nc, which all sets are compared with")
     tension = data / "tension.nc"
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None

@@ -56,7 +56,7 @@ TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
-BY_SIZE = ("n_1024", "fiducial", "n_16384")
+BY_SIZE = ("n_1024", "base", "n_16384")
 """Sets that differ in the number of monomers, the fewest first."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
@@ -64,10 +64,10 @@ SMALL = "n_1024"
 """The set of small clusters that go to high filling factors; damping and rolling displacements are varied there."""
 HIGH = "high_16384"
 """The set that high filling factors are told of."""
-LOOSE = {"slow": ("n_16384", 0.0055, 0.009), "explicit_16384": ("n_16384", 0.008, 0.019)}
+LOOSE = {"slow_16384": ("n_16384", 0.0055, 0.009), "explicit_16384": ("n_16384", 0.008, 0.019)}
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
 BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
-"""What a set is compared with, by the beginning of its name; all others with the fiducial set."""
+"""What a set is compared with, by the beginning of its name; all others with the base set."""
 
 
 def of_set(name, table):
@@ -261,7 +261,7 @@ def _by_size(sets, name, larger, every, word="larger"):
 
 def _beside(name):
     """The set that one is compared with."""
-    return next((other for start, other in BESIDE.items() if name.startswith(start)), "fiducial")
+    return next((other for start, other in BESIDE.items() if name.startswith(start)), "base")
 
 
 def _near(table, phi):
@@ -352,10 +352,10 @@ def verdicts(values, sets):
         if f"{name}.ratio_{phi:g}" in values:
             ratio = values[f"{name}.ratio_{phi:g}"].value
             found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
-    exponent = values["fiducial.exponent"]
+    exponent = values["base.exponent"]
     steeper = exponent.value - 3.0
     found["exponent"] = "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
-    for name, phi in (("fiducial", 0.1), (HIGH, 0.48)):
+    for name, phi in (("base", 0.1), (HIGH, 0.48)):
         if f"{name}.rolling_{phi:g}" in values:
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
     for name in sets:
@@ -365,11 +365,11 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
-    if "slow.over_0.03" in values:
-        early, late = values["slow.over_0.01"], values["slow.over_0.03"]
+    if "slow_16384.over_0.03" in values:
+        early, late = values["slow_16384.over_0.01"], values["slow_16384.over_0.03"]
         found["slow_0.01"] = "less" if early.value + 2.0 * early.error < 1.0 else "as much"
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
-        steeper = values["slow.steeper_low"]
+        steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
@@ -388,7 +388,7 @@ def findings(sets, entries, spun, lammps=None, box=None):
     Parameters
     ----------
     sets : dict of str to xarray.Dataset
-        Tables of the kind ``compression_set``, ``fiducial`` among them.
+        Tables of the kind ``compression_set``, ``base`` among them.
     entries : xarray.Dataset or None
         Of the kind ``tension_set``.
     spun : dict or None
@@ -405,7 +405,7 @@ def findings(sets, entries, spun, lammps=None, box=None):
     values |= of_pairs(sets)
     values["worst_residual"] = max(value for name, value in values.items() if name.endswith(".residual_0.1"))
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
-    values |= of_monomers(sets.get("equal", sets["fiducial"]), unequal)
+    values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:
         values |= of_steps(
             {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}

@@ -74,7 +74,7 @@ def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
 
 
 def draw_curves(above, below, tables, labels, *, alone=False):
-    """Mean pressures with bands of one standard error, into both panels; thin where a set is not static yet.
+    """Mean pressures with bands of one standard error, into both panels; thin, without bands, where not static yet.
 
     `below` may be None.
     """
@@ -91,7 +91,8 @@ def draw_curves(above, below, tables, labels, *, alone=False):
             axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
             axes.plot(phi, value, color=style["color"], lw=THIN)
             low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
-            axes.fill_between(phi, np.where(mean > 0.0, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
+            shown = static & (mean > 0.0)
+            axes.fill_between(phi, np.where(shown, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
 
 
 def finish(figure, above, below=None):
