@@ -21,6 +21,7 @@ from systems import tree
 
 N = 12
 LAW, BOX = jkr(), open_space()
+STILL = BOX.rates()
 
 
 def cluster(speed=0.0, integrator=None, law=LAW):
@@ -93,7 +94,7 @@ def test_forces_are_weighed_by_the_matrix_of_the_contacts(angle):
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     pulls = rng.normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    weigh(state, 0.0, dt, dt, work)
+    weigh(state, 0.0, dt, dt, STILL, work)
     expected = np.linalg.solve(dense_matrix(state, theta, dt), pulls.ravel()).reshape(N, 6)
     np.testing.assert_allclose(force[:, 0:3] / rows[:, MASS, None], expected[:, :3], rtol=1e-7)
     inertia = 0.4 * rows[:, MASS] * rows[:, RADIUS] ** 2
@@ -110,7 +111,7 @@ def test_what_the_step_takes_is_the_work_of_the_forces_less_that_of_the_motion()
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     pulls = np.random.default_rng(3).normal(size=(N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    taken = weigh(state, 0.0, last, dt, work)
+    taken = weigh(state, 0.0, last, dt, STILL, work)
     mass = np.repeat(rows[:, [MASS, MASS]] * np.array([1.0, 0.4]) * rows[:, [RADIUS, RADIUS]] ** [0, 2], 3, axis=1)
     before = np.hstack([rows[:, VX : VX + 3], rows[:, WX : WX + 3]])
     after = before + 0.5 * (last + dt) * np.hstack([force[:, 0:3], force[:, 4:7]]) / mass
@@ -131,7 +132,7 @@ def test_rigid_motion_has_its_true_mass_and_is_not_calmed(angle):
     rows[:, WX : WX + 3] = turn
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     force[:] = 0.0
-    weigh(state, 1e9, 1e-10, 1e-10, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
+    weigh(state, 1e9, 1e-10, 1e-10, STILL, work)  # with the rate alone: M (rate M'^-1 M v - rate v) is 0
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
 
@@ -146,7 +147,7 @@ def test_rigid_motion_is_not_calmed_in_a_box_that_changes(rate):
     rows[:, VX : VX + 3] = -np.array(box.rates()) * rows[:, X : X + 3]  # peculiar: at rest in space
     force = state.force.reshape(-1, FORCE_ROW)[:N]
     force[:] = 0.0
-    weigh(state, 1e9, 1e-10, 1e-10, work)
+    weigh(state, 1e9, 1e-10, 1e-10, STILL, work)
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
     assert (np.abs(force[:, 4:7]) < 1e-8 * limit * rows[:, RADIUS, None]).all()
@@ -287,7 +288,7 @@ def weighed(state, work):
     force[:] = 0.0
     pulls = np.random.default_rng(3).normal(size=(2 * N, 6)) * np.array([1e-9] * 3 + [1e-17] * 3)
     force[:, 0:3], force[:, 4:7] = pulls[:, :3], pulls[:, 3:]
-    weigh(state, 0.0, 3e-11, 3e-11, work)
+    weigh(state, 0.0, 3e-11, 3e-11, STILL, work)
     return force.copy()
 
 
@@ -338,5 +339,5 @@ def test_a_monomer_that_touches_its_own_copy_is_weighed_too():
     # both surfaces move against each other by w times the distance of the centres
     slow = inertia + 0.5 * dt**2 * k_s * (1.99 * radius) ** 2
     state.force[4:7] = 1e-20
-    weigh(state, 0.0, dt, dt, work)
+    weigh(state, 0.0, dt, dt, STILL, work)
     np.testing.assert_allclose(state.force[4:7], 1e-20 * inertia / np.array([inertia, slow, slow]), rtol=1e-9)

@@ -221,11 +221,12 @@ def _cross(a, b):
 
 
 @jit
-def weigh(state, rate, last, dt, work):
-    """Turn the forces F into M (M'^-1 (F + rate (M v - s)) - rate v), which moves monomers of true mass as M' says.
+def weigh(state, rate, last, dt, rates, work):
+    """Turn the forces F into M (M'^-1 (F + D + rate (M v - s)) - rate v) - D, which moves monomers as M' says.
 
     The terms with the rate [1/s] take stiff motion away and leave soft motion, for which M'^-1 (M v - s) is v. s is the
-    `strain` of the box.
+    `strain` of the box. D is the force of a box that changes, -M H v of the peculiar velocities v, which the drive adds
+    for the true masses.
 
     Parameters
     ----------
@@ -233,6 +234,8 @@ def weigh(state, rate, last, dt, work):
     rate : float
     last, dt : float
         Durations of the last move and of the next one [s]; the kick between them is their mean.
+    rates : tuple of float
+        H of the box along x, y, z [1/s].
     work : Work
 
     Returns
@@ -246,8 +249,17 @@ def weigh(state, rate, last, dt, work):
     With F(x) linear in x, potential energy changes by -(F + F')/2 dx in a move between the forces F and F'. So to F
     belongs F (v last + v' dt)/2, where v' = v + kick rise. That is kick F (v + v')/2, which the kinetic energy goes
     with, and (dt - last)/4 F (v' - v), which would be lost untold where a step is longer than the last one.
+
+    A body that does not follow the box has v = -H x and keeps it if the contacts bear the force M H^2 x. Were D left to
+    the true masses, they would have to bear -M' H v, theta k H^2 dt^2 d more in a contact of length d: a tension that
+    grows with the step and makes the pressure of loose clusters too low.
     """
     kick, longer = 0.5 * (last + dt), 0.25 * (dt - last)
+    drag = (
+        math.expm1(-rates[0] * kick) / kick,
+        math.expm1(-rates[1] * kick) / kick,
+        math.expm1(-rates[2] * kick) / kick,
+    )
     monomer, force, x, strain = state.monomer, state.force, work.x, work.strain
     place = work.factor.place
     n = state.counter[MONOMERS]
@@ -261,7 +273,8 @@ def weigh(state, rate, last, dt, work):
         turn = rate * SPHERE * monomer[r + MASS] * radius
         for axis in range(3):
             a = np.uint64(axis)
-            x[to + axis] = force[q + FORCE_X + a] + pull * monomer[r + VX + a] - rate * strain[to + axis]
+            slowed = drag[axis] * monomer[r + MASS]
+            x[to + axis] = force[q + FORCE_X + a] + (pull + slowed) * monomer[r + VX + a] - rate * strain[to + axis]
             turned = turn * monomer[r + WX + a] - rate * strain[to + 3 + axis]
             x[to + 3 + axis] = force[q + TORQUE_X + a] * inv + turned
     solve(work.factor, x)
@@ -277,7 +290,7 @@ def weigh(state, rate, last, dt, work):
         for axis in range(3):
             a = np.uint64(axis)
             v, w = monomer[r + VX + a], monomer[r + WX + a]
-            rise = x[to + axis] - rate * v
+            rise = x[to + axis] - (rate + drag[axis]) * v
             turn = (x[to + 3 + axis] - rate * radius * w) * inv
             pull, twist = force[q + FORCE_X + a], force[q + TORQUE_X + a]
             taken += (pull - m * rise) * (v + 0.5 * kick * rise) + longer * pull * rise

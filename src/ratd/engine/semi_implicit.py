@@ -89,8 +89,8 @@ class SemiImplicit(NamedTuple):
         No monomer moves by more than this in a step [m].
     theta : float
         Weight of the stiffness in the mass matrix.
-    calming : float
-        Part of the stiff motion that a step takes away.
+    calming, calmed : float
+        Part of the stiff motion that a step takes away, up to this length of the step [s]; of longer ones less.
     first : float
         f of the first step, times the shortest time of any contact.
     landing : float
@@ -104,6 +104,7 @@ class SemiImplicit(NamedTuple):
     travel: float
     theta: float
     calming: float
+    calmed: float
     first: float
     landing: float
     implicit_damping: bool
@@ -141,7 +142,8 @@ class SemiImplicit(NamedTuple):
         held = max(dt, scalar[DT_DRIFT])
         if work.made[0] != held or work.made[1] > TURNED:
             make_matrix(state, law, box, self.theta, held, work)
-        scalar[LOST_DAMP] += weigh(state, self.calming / kick, scalar[DT_DRIFT], dt, work)
+        rate = self.calming / kick * min(1.0, self.calmed / kick)
+        scalar[LOST_DAMP] += weigh(state, rate, scalar[DT_DRIFT], dt, box.rates(), work)
         drive.move(state, box, kick, dt)
         scalar[DT_DRIFT] = dt
         scalar[TIME] += dt
@@ -286,7 +288,9 @@ def add_turns(work, duration):
     return greatest
 
 
-def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calming=0.0, first=0.125, landing=math.inf):
+def semi_implicit(
+    *, longest, displacement=1e-10, travel=1e-9, theta=0.5, calming=0.0, calmed=math.inf, first=0.125, landing=math.inf
+):
     """The linearly implicit integrator.
 
     Parameters
@@ -300,6 +304,9 @@ def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calmin
     calming : float
         Part of the stiff motion, between 0 and 1, that a step takes away. It is for aggregates whose equilibria alone
         matter, and lets them come to rest.
+    calmed : float
+        Length of a step [s] above which it takes less, as the inverse of the length. It also takes some of soft motion,
+        as a viscosity of calming theta dt times the stiffness would: so this stops growing with the step.
     first : float
         f of the first step.
     landing : float
@@ -322,7 +329,8 @@ def semi_implicit(*, longest, displacement=1e-10, travel=1e-9, theta=0.5, calmin
         raise InputError(f"theta is {theta!r}; it must be between 0.25 and 10.")
     if not 0.0 <= calming < 1.0:
         raise InputError(f"calming is {calming!r}; it must be between 0 and 1.")
-    if not landing > 0.0:
-        raise InputError(f"landing is {landing!r}; it must be a number above 0.")
-    options = (longest, displacement, travel, theta, calming, first, landing)
+    for name, value in {"calmed": calmed, "landing": landing}.items():
+        if not value > 0.0:
+            raise InputError(f"{name} is {value!r}; it must be a number above 0.")
+    options = (longest, displacement, travel, theta, calming, calmed, first, landing)
     return SemiImplicit(*map(float, options), False)

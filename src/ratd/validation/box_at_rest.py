@@ -90,7 +90,9 @@ def _in_ratd(settings):
     law, time_unit = jkr(), Cluster(cluster).time_unit
     how = {"law": law, "timestep_factor": settings["timestep_factor"], "long_steps": None, "snapshots": ()}
     run = compress(cluster, settings["strain_rate"], settings["squeezed"] * _box(cluster)[1], **how)
-    integrator, _ = integrators(cluster.material, cluster.radius[0], time_unit, settings["timestep_factor"], None)
+    integrator, _ = integrators(
+        cluster.material, cluster.radius[0], time_unit, settings["timestep_factor"], None, settings["strain_rate"]
+    )
     state = state_of(run)
     start_anew(state, law, integrator)
     parts = Parts(law, periodic(run["box_length"].values[-1]), integrator)

@@ -61,7 +61,7 @@ ENDS = {
 """Pulls by the ends: part of the mass held at each, and the strain rate; the usual one along all three axes."""
 DENSEST = 0.62
 """Filling factor above which no grain is squeezed."""
-STEPS = LongSteps(longest=3.0, until_phi=1.0)
+STEPS = LongSteps(until_phi=1.0)
 """Steps in the box: the smallest monomers would make explicit ones far too short."""
 _AXIS = {"shortest": 2, "middle": 0, "longest": 1}
 """Coordinates of a relaxed grain along its axes, see `ratd.experiments.relax.relax`."""

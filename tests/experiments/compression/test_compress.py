@@ -113,7 +113,7 @@ def test_a_run_is_handed_over_to_explicit_steps(cluster, run):
 
 
 @pytest.mark.parametrize(
-    ("steps", "said"), [("long", "must be a ratd.LongSteps"), (ratd.LongSteps(longest=-1.0), "long_steps.longest is")]
+    ("steps", "said"), [("long", "must be a ratd.LongSteps"), (ratd.LongSteps(strain=-1.0), "long_steps.strain is")]
 )
 def test_wrong_steps_are_refused(cluster, steps, said):
     with pytest.raises(ratd.InputError, match=said):

@@ -61,7 +61,7 @@ def test_only_the_sets_that_are_named_are_wanted():
 
 
 def test_the_steps_go_from_the_config_to_the_run():
-    steps = {"longest": 3, "displacement": 0.2, "calming": 0.1, "until_phi": 0.03}
+    steps = {"strain": 1.8e-4, "displacement": 0.2, "calming": 0.1, "until_phi": 0.03}
     grain = ratd.grow_bcca(64, seed=0)
     said = {}
     for name, own in (("long", steps), ("explicit", None)):

@@ -172,7 +172,7 @@ def compress(
     if long_steps is not None:
         check_stiffness(law, "give long_steps=None")
     first_integrator, explicit = integrators(
-        cluster.grain.material, cluster.radius, cluster.time_unit, timestep_factor, long_steps
+        cluster.grain.material, cluster.radius, cluster.time_unit, timestep_factor, long_steps, strain_rate
     )
     parts = Parts(law, box, first_integrator)
     static = _static_from(cluster, box)

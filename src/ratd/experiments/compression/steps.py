@@ -15,17 +15,23 @@ ROLLED = 2 / 3
 its limit from rest."""
 
 
+CALMED = 0.3
+"""Length of a step over the longest above which it calms less (`calmed` of `semi_implicit`)."""
+TRAVEL = 0.01
+"""Part of r_0 by which a monomer may move against the box in a long step at most."""
+
+
 class LongSteps(NamedTuple):
     """Long steps with the semi-implicit integrator, up to some filling factor.
 
     Attributes
     ----------
-    longest : float
-        The longest step over t_0.
+    strain : float
+        By which part an edge of the box changes in the longest step: 6e-6 is 10 t_0 at C_v = 3e-7. In longer steps the
+        pressure of a loose cluster is too low (docs/compression.md). Steps of t_0 are allowed however fast the box is.
     displacement : float
-        How far a monomer may move in a step against the box, and against one in contact, over the equilibrium
-        compression delta_0 of two. Monomers that move farther meet with an overlap that costs work. Where the critical
-        rolling displacement is small it allows less, see `ROLLED`.
+        How far a monomer may move in a step against one in contact, over the equilibrium compression delta_0 of two.
+        Where the critical rolling displacement is small it allows less, see `ROLLED`.
     calming : float
         See `ratd.engine.semi_implicit.semi_implicit`.
     landing : float
@@ -36,14 +42,14 @@ class LongSteps(NamedTuple):
         matrix of a long step costs more than it saves.
     """
 
-    longest: float = 30.0
+    strain: float = 6e-6
     displacement: float = 0.5
     calming: float = 0.1
     landing: float = 0.2
     until_phi: float = 0.2
 
 
-def integrators(material, radius, time_unit, timestep_factor, long_steps):
+def integrators(material, radius, time_unit, timestep_factor, long_steps, strain_rate):
     """The integrators of a compression.
 
     Parameters
@@ -56,6 +62,8 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
     timestep_factor : float
         f of the explicit step.
     long_steps : LongSteps or None
+    strain_rate : float
+        C_v.
 
     Returns
     -------
@@ -71,12 +79,13 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps):
         return explicit, explicit
     if not isinstance(long_steps, LongSteps):
         raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
-    for name in ("longest", "displacement", "landing", "until_phi"):
+    for name in ("strain", "displacement", "landing", "until_phi"):
         value = getattr(long_steps, name)
         if not (is_number(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
     natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
     displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
-    longest = long_steps.longest * time_unit
-    how = {"displacement": displacement, "travel": displacement, "calming": long_steps.calming}
-    return semi_implicit(longest=longest, landing=long_steps.landing * time_unit, **how), explicit
+    how = {"displacement": displacement, "travel": TRAVEL * radius, "calming": long_steps.calming}
+    longest = max(long_steps.strain / (2.0 * strain_rate), 1.0)
+    times = {"longest": longest, "calmed": CALMED * longest, "landing": long_steps.landing}
+    return semi_implicit(**how, **{name: value * time_unit for name, value in times.items()}), explicit

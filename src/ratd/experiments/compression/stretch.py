@@ -108,7 +108,9 @@ def stretch(
             f"law is {law!r}; it must be that of the compression, {attrs['law']}, whose contacts the aggregate has."
         )
     material = Material(attrs["material"], *(attrs[field.name] for field in fields(Material) if field.name != "name"))
-    integrator, _ = integrators(material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps)
+    integrator, _ = integrators(
+        material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps, strain_rate
+    )
     edges = np.array(periodic(box_length)[:3]) if filled else compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, attrs["time_unit"])
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
