@@ -6,7 +6,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.drives.free import free, rest
-from ratd.engine.layout import CONTACTS, DT, FORCE_ROW, MASS, RADIUS, VX, WX, X
+from ratd.engine.layout import CONTACTS, DT, DT_DRIFT, FORCE_ROW, MASS, RADIUS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.mass_matrix import TURNED, make_matrix, weigh
 from ratd.engine.semi_implicit import RUNG, _work, add_turns, contact_speeds, rung_below, semi_implicit
@@ -151,6 +151,38 @@ def test_rigid_motion_is_not_calmed_in_a_box_that_changes(rate):
     limit = 1e9 * rows[:, MASS, None] * np.abs(rows[:, VX : VX + 3]).max()
     assert (np.abs(force[:, :3]) < 1e-8 * limit).all()
     assert (np.abs(force[:, 4:7]) < 1e-8 * limit * rows[:, RADIUS, None]).all()
+
+
+def test_a_body_at_rest_in_a_box_that_changes_needs_the_force_of_its_true_mass():
+    """Forces that keep it against the drag of the box are not changed, and leave its velocities as they are."""
+    state = rolled(cluster())
+    box, dt = periodic(1e-6, (-3e3, 2e3, -1e3)), 1e-10
+    work = _work(state)
+    make_matrix(state, LAW, box, 0.5, dt, work)
+    rows = monomer_rows(state)
+    rows[:, VX : VX + 3] = -np.array(box.rates()) * rows[:, X : X + 3]
+    held = -rows[:, MASS, None] * rows[:, VX : VX + 3] * np.expm1(-np.array(box.rates()) * dt) / dt
+    force = state.force.reshape(-1, FORCE_ROW)[:N]
+    force[:] = 0.0
+    force[:, :3] = held
+    weigh(state, 0.0, dt, dt, box.rates(), work)
+    np.testing.assert_allclose(force[:, :3], held, rtol=1e-9, atol=1e-9 * np.abs(held).max())
+    assert np.abs(force[:, 4:7]).max() < 1e-9 * np.abs(held).max() * rows[:, RADIUS].max()
+
+
+def test_longer_steps_calm_less():
+    """From `calmed` on the part that is taken away falls as the inverse of the step."""
+    moved = []
+    for calmed in (np.inf, 1e-10, 0.5e-10):
+        integrator = semi_implicit(longest=2e-10, displacement=1.0, travel=1.0, calming=0.1, calmed=calmed)
+        state = cluster(0.1, integrator)
+        state.scalar[DT] = state.scalar[DT_DRIFT] = 2e-10
+        state, _ = run(state, LAW, free(), BOX, integrator, until(steps=1))
+        moved.append(monomer_rows(state)[:, VX : VX + 3].copy())
+    none, half, quarter = moved
+    calm = none - half  # a half of what is taken without a limit
+    np.testing.assert_allclose(half - quarter, 0.5 * calm, atol=1e-6 * np.abs(calm).max())
+    assert np.abs(calm).max() > 1e-4
 
 
 @pytest.mark.parametrize("calming", [0.0, 0.2])

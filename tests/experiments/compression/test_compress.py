@@ -99,6 +99,22 @@ def test_long_steps_give_the_same_as_explicit_ones(cluster, run):
         assert work[0] == pytest.approx(work[1], rel=0.2)
 
 
+def test_long_steps_do_not_pull_at_a_loose_cluster():
+    """One that has not met its copies: it has the pressure of its inertia alone, and only too long steps miss it."""
+    loose = ratd.grow_bcca(128, material="silicate", seed=1)
+    how = {"strain_rate": 3e-6, "until_phi": 0.02, "snapshots": (), "balance": False}
+    exact = ratd.compress(loose, **how, long_steps=None)
+    assert exact["n_contacts"].values[-1] == 127
+    late = exact["phi_mean"].values > 0.015
+    off = []
+    for strain in (ratd.LongSteps().strain, 6e-5):
+        run = ratd.compress(loose, **how, long_steps=ratd.LongSteps(strain=strain))
+        off.append(
+            np.mean((run["pressure"] - exact["pressure"]).values[late]) / np.abs(exact["pressure"]).mean().item()
+        )
+    assert abs(off[0]) < 0.03 and off[1] < -0.2, off
+
+
 def test_a_run_is_handed_over_to_explicit_steps(cluster, run):
     steps = ratd.LongSteps(until_phi=0.1)
     early = ratd.compress(cluster, **HOW, long_steps=steps)
