@@ -382,6 +382,16 @@ def _same(values, name, beside):
     return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
 
 
+def of_balances(sets, values):
+    """The worst balance of energy from 0.1 on: of sets whose long steps land in short ones, and of earlier ones."""
+    found = {}
+    for name, table in sets.items():
+        if f"{name}.residual_0.1" in values and "SemiImplicit" in table.attrs["integrator"]:
+            group = "landing" if "landing=" in table.attrs["integrator"] else "earlier"
+            found.setdefault(f"{group}.residual", []).append(values[f"{name}.residual_0.1"])
+    return {name: max(residuals) for name, residuals in found.items()}
+
+
 def findings(sets, entries, spun, lammps=None, box=None):
     """Values and verdicts for the slots of the document.
 
@@ -403,7 +413,7 @@ def findings(sets, entries, spun, lammps=None, box=None):
     for name, table in sets.items():
         values |= of_set(name, table)
     values |= of_pairs(sets)
-    values["worst_residual"] = max(value for name, value in values.items() if name.endswith(".residual_0.1"))
+    values |= of_balances(sets, values)
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:
