@@ -13,8 +13,6 @@ __all__ = ["LongSteps", "integrators"]
 ROLLED = 2 / 3
 """Part of the critical rolling displacement by which a contact may roll in a long step at most, so that none rolls past
 its limit from rest."""
-
-
 CALMED = 0.3
 """Length of a step over the longest above which it calms less (`calmed` of `semi_implicit`)."""
 TRAVEL = 0.01
@@ -36,7 +34,7 @@ class LongSteps(NamedTuple):
         See `ratd.engine.semi_implicit.semi_implicit`.
     landing : float
         The longest step over t_0 where two monomers meet, see there. The default is about that of an explicit step, and
-        keeps the balance of energy to some 0.05 % of the work at a filling factor of 0.1.
+        keeps the balance of energy to less than 0.1 % of the work from a filling factor of 0.1 on.
     until_phi : float
         Filling factor from which on the explicit step takes over. There each monomer touches several others, and the
         matrix of a long step costs more than it saves.
