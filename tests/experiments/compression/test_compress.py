@@ -6,6 +6,7 @@ import pytest
 import ratd
 from ratd.aggregates.strength import rolling_pressure
 from ratd.experiments import intervals
+from ratd.experiments.compression.pull import pulled
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, static_from, time_unit
 from ratd.experiments.compression.strain import strain_dataset
@@ -218,6 +219,59 @@ def test_a_pulled_cluster_comes_apart(run):
     assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
 
 
+def test_a_box_lets_go_of_a_cluster_before_it_is_pulled(cluster):
+    pressed = ratd.compress(cluster, 1e-5, 0.25)
+    loaded, free = (ratd.stretch(pressed, 1e-5, unload=unload).attrs for unload in (False, True))
+    assert abs(free["residual_pressure"]) < 0.3 * loaded["residual_pressure"]
+    # it takes little room to do so
+    assert 0.95 * loaded["phi_start"] < free["phi_start"] < loaded["phi_start"]
+    assert free["tensile_strength"] == pytest.approx(loaded["tensile_strength"], rel=0.5)
+
+
+@pytest.mark.parametrize("unload", [False, True])
+def test_a_killed_pull_goes_on_with_the_same_bits(run, tmp_path, monkeypatch, unload):
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
+    how = {"strain_rate": 3e-5, "unload": unload}
+    whole = ratd.stretch(run, **how)
+    seen = []
+
+    def stop(phi, tension, seconds_to_go):
+        seen.append(phi)
+        if len(seen) == 30:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ratd.stretch(run, **how, checkpoint=tmp_path / "pull", progress=stop)
+    went_on = []
+    again = ratd.stretch(run, **how, checkpoint=tmp_path / "pull", progress=lambda phi, *_: went_on.append(phi))
+    assert went_on[0] < seen[-2]
+    assert again.equals(whole) and again.attrs == whole.attrs
+
+
+def test_the_pipeline_keeps_what_a_killed_pull_has_done(cluster, tmp_path, monkeypatch):
+    settings = {
+        "strain_rate": 3e-5, "k_n": 0.01, "scheme": "homogeneous", "timestep_factor": 0.14, "long_steps": None,
+        "pull": {"strain_rate": 3e-5, "axes": "x", "unload": False},
+    }  # fmt: skip
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
+    whole = pulled(cluster, settings, 0.1)
+    path = tmp_path / "checkpoint"
+    told = []
+
+    def kill(tell):
+        told.append(tell())
+        if path.with_name("checkpoint.pull").exists():
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        pulled(cluster, settings, 0.1, say=kill, checkpoint=path)
+    first, told = len(told), []
+    assert pulled(cluster, settings, 0.1, say=lambda tell: told.append(tell()), checkpoint=path).equals(whole)
+    assert 0 < len(told) < first
+
+
 def test_an_aggregate_that_fills_a_box_is_pulled_as_the_compression_is(run):
     """The same spheres without their history: what they slid and rolled is forgotten, so only nearly the same."""
     cluster = ratd.Grain(run["position"].values, run["radius"].values, "ice")
@@ -237,6 +291,8 @@ def test_an_aggregate_that_fills_a_box_is_pulled_as_the_compression_is(run):
     ("arguments", "said"),
     [
         ({"axes": "y"}, "axes is 'y'; allowed are x, xyz"),
+        ({"axes": ["x"]}, "axes is \\['x'\\]; allowed are x, xyz"),
+        ({"unload": 1}, "unload is 1; it must be True or False"),
         ({"strain_rate": -1}, "strain_rate is -1; it must be a number above 0"),
     ],
 )
@@ -245,6 +301,8 @@ def test_bad_input_of_a_pull_is_one_sentence(run, arguments, said):
         ratd.stretch(run, **arguments)
     with pytest.raises(ratd.InputError, match="compressed must be a ratd.Grain, or what ratd.compress returned"):
         ratd.stretch(run[["phi"]])
+    with pytest.raises(ratd.InputError, match="compressed must be a ratd.Grain, or what ratd.compress returned"):
+        ratd.stretch(None)
 
 
 def test_the_state_of_a_run_can_be_taken_up(run):

@@ -2,13 +2,15 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import findings
+from ratd.experiments.compression.findings import findings, of_tension
 from ratd.experiments.compression.tables import joined
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
@@ -83,9 +85,60 @@ def test_clusters_that_are_made_later_are_added_to_their_set(tmp_path):
     assert found["seed"].values.tolist() == list(range(10))
     for name in whole.variables:
         assert found[name].values == pytest.approx(whole[name].values, rel=1e-12, nan_ok=True), name
-    # a seed that is there already: the new table takes the place of the old one
+    # a seed that is there already: the new cluster takes the place of the old one, and the others stay
+    again = io.read(tmp_path / "later/compression/n_1024.nc", "compression_set")
+    again["pressure"] = 2.0 * again["pressure"]
+    io.write(tmp_path / "later/compression/n_1024.nc", again, "compression_set")
     document.collect(tmp_path / "later", tmp_path / "data")
-    assert io.read(tmp_path / "data/sets/n_1024.nc", "compression_set")["seed"].values.tolist() == [5, 1, 3]
+    twice = io.read(tmp_path / "data/sets/n_1024.nc", "compression_set")
+    assert twice["seed"].values.tolist() == list(range(10))
+    factor = (twice["pressure"] / found["pressure"]).mean("phi_bin").values
+    assert factor == pytest.approx([1, 2, 1, 2, 1, 2, 1, 1, 1, 1])
+
+
+def test_clusters_made_in_another_way_do_not_take_the_place_of_some(tmp_path):
+    """Else a set would have two sorts of clusters, or lose some without a word."""
+    table = io.read(document.DATA / "sets/n_1024.nc", "compression_set")
+    target = tmp_path / "data/sets/n_1024.nc"
+    io.write(target, table, "compression_set")
+    other = table.isel(seed_number=[0, 1, 2]).assign_attrs(integrator="other steps")
+    io.write(tmp_path / "some/compression/n_1024.nc", other, "compression_set")
+    with pytest.raises(ratd.InputError, match="n_1024.nc: has 7 clusters that the new table lacks, and .* integrator"):
+        document.collect(tmp_path / "some", tmp_path / "data")
+    assert io.read(target, "compression_set")["seed"].values.tolist() == list(range(10))
+    io.write(tmp_path / "all/compression/n_1024.nc", table.assign_attrs(integrator="other steps"), "compression_set")
+    document.collect(tmp_path / "all", tmp_path / "data")
+    assert io.read(target, "compression_set").attrs["integrator"] == "other steps"
+
+
+def pulls(strength, seeds=(0, 1), *, phi=0.1, n_axes=1, rate=3e-6, n=1024, unloaded=0):
+    """Entries of the kind tension_set, a strength a seed."""
+    of_each = {
+        "seed": seeds, "strength": strength, "phi": np.full(2, phi), "phi_compressed": np.full(2, phi),
+        "phi_strength": np.full(2, 0.5 * phi), "residual": np.full(2, 0.1), "strain_rate": np.full(2, rate),
+        "n_axes": np.full(2, n_axes), "n_monomers": np.full(2, n), "unloaded": np.full(2, unloaded),
+        "surface_energy": np.full(2, 0.1), "monomer_radius": np.full(2, 1e-7),
+    }  # fmt: skip
+    return xr.Dataset({name: ("entry", np.asarray(values)) for name, values in of_each.items()})
+
+
+def test_pulls_of_other_sorts_are_told_apart():
+    entries = [pulls([10.0, 20.0]), pulls([20.0, 60.0], phi=0.2), pulls([1.0, 3.0], n_axes=3)]
+    entries += [pulls([11.0, 22.0], rate=1e-6), pulls([30.0, 30.0], n=4096), pulls([9.0, 18.0], unloaded=1)]
+    found = of_tension(xr.concat(entries, "entry"))
+    unit = 0.951 * 0.1 / 1e-7 * 0.1**1.8
+    assert found["tension_x.rate"] == 3e-6 and found["tension_x.N"] == 1024
+    assert found["tension_x.0.1"].value == pytest.approx(15.0 / unit)
+    assert found["tension_xyz.0.1"].value == pytest.approx(2.0 / unit)
+    assert found["tension_x.residual_0.1"].value == pytest.approx(0.1 / 15.0)
+    assert found["tension_x.peak_0.2"].value == pytest.approx(0.5)
+    assert found["tension_x.exponent"].value == pytest.approx(np.log(np.sqrt(1200 / 200)) / np.log(2))
+    # of the same clusters: each by the same part
+    assert found["tension_rate_1e-06.over_0.1"] == pytest.approx((1.1, 0.0))
+    assert found["tension_unloaded.over_0.1"] == pytest.approx((0.9, 0.0))
+    # of others: 15 +- 5 beneath 30 +- 0
+    assert found["tension_N_4096.over_0.1"] == pytest.approx((2.0, 2.0 / 3.0))
+    assert not any(name.endswith("over_0.2") for name in found)
 
 
 def test_tables_of_other_sets_are_not_joined():

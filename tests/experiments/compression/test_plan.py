@@ -44,7 +44,7 @@ def test_the_paper_is_as_printed():
     assert plan.grow("xi_2")["material"]["critical_rolling_displacement"] == pytest.approx(2e-10)
     mrn = {"law": "mrn", "smallest": pytest.approx(5e-8), "largest": pytest.approx(4e-7)}
     assert plan.grow("mrn")["radii"] == mrn
-    assert plan.stretch("x")["pull"] == {"strain_rate": 3e-7, "axes": "x"}
+    assert plan.stretch("x")["pull"] == {"strain_rate": 3e-7, "axes": "x", "unload": False}
 
 
 def test_only_the_sets_that_are_named_are_wanted():

@@ -8,9 +8,11 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
-from ratd.base.errors import FileError
+from ratd.base.errors import FileError, InputError
+from ratd.base.words import plural
 from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
 from ratd.experiments.compression.findings import findings, spun_up
@@ -43,14 +45,22 @@ PEER = Path("docs/validation/data")
 def collect(results, data=DATA):
     """Take the tables of a folder of results beside the document, those that are finished.
 
-    A set that is made in pieces grows: clusters whose seeds are not there yet are added to it. A table that has a seed
-    of the one that is there takes its place.
+    A set that is made in pieces grows: the clusters of a new table are added to those that are there, or take the place
+    of those with the same seeds.
 
     Parameters
     ----------
     results : path-like
         Such as ``results/compression_default``.
     data : path-like
+
+    Raises
+    ------
+    FileError
+        If there are no tables.
+    InputError
+        If the table that is there has clusters that a new one lacks, and was made in another way, such as with other
+        steps.
     """
     results, data = Path(results), Path(data)
     names = [path.name for path in sorted((results / "compression").glob("*.nc")) if path.is_file()]
@@ -62,8 +72,16 @@ def collect(results, data=DATA):
         table = io.read(results / "compression" / name, kind)
         if kind == "compression_set" and target.is_file():
             there = io.read(target, kind)
-            if not {*there["seed"].values.tolist()} & {*table["seed"].values.tolist()}:
-                io.write(target, joined(there, table), kind)
+            left = ~np.isin(there["seed"].values, table["seed"].values)
+            if left.any():
+                try:
+                    both = joined(there.isel(seed_number=left), table)
+                except InputError as error:
+                    raise InputError(
+                        f"{target}: has {plural(left.sum(), 'cluster')} that the new table lacks, and {error} Make "
+                        "these anew too, or delete the file first."
+                    ) from None
+                io.write(target, both, kind)
                 continue
         with atomic(target) as temporary:
             temporary.write_bytes((results / "compression" / name).read_bytes())

@@ -18,7 +18,7 @@ from ratd.base.materials import get_material
 from ratd.base.measured import Measured, median
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_lammps
-from ratd.experiments.compression.figures.tension import in_units
+from ratd.experiments.compression.figures.tension import in_units, main_pulls, nominal_phi
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
 from ratd.experiments.compression.strength import (
@@ -276,28 +276,65 @@ def _bin_at(table, phi):
 
 
 def of_tension(entries):
-    """Strength over the formula of Tatsuuma et al. and the place of the peak, by way of pulling and phi."""
+    """Strength over the formula of Tatsuuma et al. and the place of the peak, by way of pulling and phi.
+
+    Parameters
+    ----------
+    entries : xarray.Dataset
+        Of the kind ``tension_set``.
+
+    Returns
+    -------
+    dict
+        Slots ``tension_WAY.WHAT_PHI``, PHI being the filling factor of the compression. WAY is ``x`` or ``xyz`` for
+        what most pulls along one axis were made with (`main_pulls`); ``unloaded`` where the box let go of the cluster
+        first; ``rate_RATE`` and ``N_NUMBER`` where the pull had another rate or number of monomers. WHAT is ``over``
+        for these last three, the strength over that of the main pulls along one axis.
+    """
     strength, formula = in_units(entries)
-    found = {}
-    rates, phi = entries["strain_rate"].values, np.round(entries["phi"].values, 3)
-    axes = np.where(entries["n_axes"].values == 1, "x", "xyz")
-    for way in np.unique(axes):
-        for rate in np.unique(rates[axes == way]):
-            own = (axes == way) & (rates == rate)
-            for each in np.unique(phi[own]):
-                here = own & (phi == each)
-                key = f"{each:g}_{rate:.0e}"
-                found[f"tension_{way}.{key}"] = Measured(*mean_of((strength / formula)[here]))
-                found[f"tension_{way}.peak_{key}"] = Measured(*mean_of((entries["phi_strength"].values / phi)[here]))
-                found[f"tension_{way}.n_{key}"] = int(here.sum())
-                found[f"tension_{way}.held_{key}"] = int((strength[here] > 0.0).sum())
-                pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
-                found[f"tension_{way}.residual_{key}"] = Measured(*mean_of(pressed))
-            fitted = own & (phi >= TENSION_FROM)
-            if len(np.unique(phi[fitted])) > 1:
-                x, y, seed = np.log(phi[fitted]), np.log(strength[fitted]), entries["seed"].values[fitted]
-                found[f"tension_{way}.exponent_{rate:.0e}"] = _slope(x, y, seed)
+    rate, n = main_pulls(entries)
+    rates, numbers, phi = entries["strain_rate"].values, entries["n_monomers"].values, nominal_phi(entries)
+    seed, unloaded = entries["seed"].values, entries["unloaded"].values == 1
+    one_axis, alike = entries["n_axes"].values == 1, (rates == rate) & (numbers == n)
+    main = one_axis & alike & ~unloaded
+    ways = {"x": main, "xyz": ~one_axis & alike & ~unloaded, "unloaded": one_axis & alike & unloaded}
+    for other in np.unique(rates[rates != rate]):
+        ways[f"rate_{other:.0e}"] = one_axis & ~unloaded & (rates == other) & (numbers == n)
+    for other in np.unique(numbers[numbers != n]):
+        ways[f"N_{other}"] = one_axis & ~unloaded & (rates == rate) & (numbers == other)
+    found = {"tension_x.rate": rate, "tension_x.N": n}
+    for way, own in ways.items():
+        for each in np.unique(phi[own]):
+            here = own & (phi == each)
+            peak = entries["phi_strength"].values / entries["phi"].values
+            pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
+            found |= {
+                f"tension_{way}.{each:g}": Measured(*mean_of((strength / formula)[here])),
+                f"tension_{way}.peak_{each:g}": Measured(*mean_of(peak[here])),
+                f"tension_{way}.n_{each:g}": int(here.sum()),
+                f"tension_{way}.held_{each:g}": int((strength[here] > 0.0).sum()),
+                f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
+                f"tension_{way}.start_{each:g}": Measured(*mean_of(entries["phi"].values[here])),
+            }
+            beside = main & (phi == each)
+            if way not in ("x", "xyz") and beside.any():
+                found[f"tension_{way}.over_{each:g}"] = _over(
+                    strength, seed, here, beside, same=not way.startswith("N")
+                )
+    fitted = main & (phi >= TENSION_FROM)
+    if len(np.unique(phi[fitted])) > 1:
+        found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])
     return found
+
+
+def _over(values, seed, own, other, same):
+    """Mean of some values over that of others; of the same clusters where these are the same ones."""
+    if same:
+        common = np.intersect1d(seed[own], seed[other])
+        pairs = np.array([[values[each & (seed == one)][0] for each in (own, other)] for one in common])
+        return measured(of_means(pairs, lambda mean: mean[0] / mean[1]))
+    (one, one_error), (two, two_error) = mean_of(values[own]), mean_of(values[other])
+    return Measured(one / two, abs(one / two) * math.hypot(one_error / one, two_error / two))
 
 
 def _slope(x, y, seed):

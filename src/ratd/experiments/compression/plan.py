@@ -184,7 +184,7 @@ class Plan:
     def stretch(self, pull):
         """Settings of a pull, with those of the compression before it."""
         own = self.config["pulls"][pull]
-        return self.compress(own["set"]) | {"pull": {key: own[key] for key in ("strain_rate", "axes")}}
+        return self.compress(own["set"]) | {"pull": {key: own[key] for key in ("strain_rate", "axes", "unload")}}
 
     def files(self, path, name):
         """Files of all seeds of a set."""

@@ -1,5 +1,7 @@
 """Clusters that are compressed and pulled: the stage `stretch` of the pipeline."""
 
+from pathlib import Path
+
 import numpy as np
 import xarray as xr
 
@@ -18,6 +20,7 @@ register(
             **over(
                 ("entry",),
                 {
+                    "phi_compressed": ("1", "filling factor at which the compression ended"),
                     "phi": ("1", "filling factor at which the pulling began"),
                     "strain_rate": ("1", "rate of the pulling in units of the compression: H t_0/2"),
                     "strength": ("Pa", "greatest tension"),
@@ -29,7 +32,12 @@ register(
             ),
             **over(
                 ("entry",),
-                {"seed": ("1", "seed"), "n_axes": ("1", "axes pulled"), "n_monomers": ("1", "N")},
+                {
+                    "seed": ("1", "seed"),
+                    "n_axes": ("1", "axes pulled"),
+                    "n_monomers": ("1", "N"),
+                    "unloaded": ("1", "1 where the box first grew until nothing pressed on it any more, else 0"),
+                },
                 dtype="i8",
             ),
         },
@@ -37,25 +45,39 @@ register(
 )
 
 
-def pulled(grain, settings, phi, say=None):
+def pulled(grain, settings, phi, *, say=None, checkpoint=None):
     """One entry of the kind ``tension_set``.
 
     Parameters
     ----------
     grain : Grain
     settings : dict
-        Those of the compression, and under ``pull`` strain_rate and axes.
+        Those of the compression, and under ``pull`` strain_rate, axes and unload.
     phi : float
         Filling factor at which the compression ends and the pulling begins.
     say : callable, optional
         From `ratd.pipeline.jobs.Job.progress`.
+    checkpoint : path-like, optional
+        Where the compression keeps what it needs to go on after a kill; the pull does beside it, in a file of which the
+        name ends with ``.pull``.
     """
     progress = None if say is None else told(say)
-    compressed = squeezed(grain, settings | {"until_phi": phi, "snapshots": []}, progress=progress)
+    compressed = squeezed(
+        grain, settings | {"until_phi": phi, "snapshots": []}, checkpoint=checkpoint, progress=progress
+    )
     own = settings["pull"]
-    how = {"axes": own["axes"], "law": law_of(settings), "progress": progress}
-    run = stretch(compressed, own["strain_rate"], timestep_factor=settings["timestep_factor"], **how)
+    run = stretch(
+        compressed,
+        own["strain_rate"],
+        axes=own["axes"],
+        unload=own["unload"],
+        law=law_of(settings),
+        timestep_factor=settings["timestep_factor"],
+        checkpoint=None if checkpoint is None else f"{checkpoint}.pull",
+        progress=progress,
+    )
     entry = {
+        "phi_compressed": compressed["phi"].values[-1],
         "phi": run.attrs["phi_start"],
         "strain_rate": run.attrs["strain_rate"],
         "strength": run.attrs["tensile_strength"],
@@ -66,6 +88,7 @@ def pulled(grain, settings, phi, say=None):
         "seed": grain.seed,
         "n_axes": len(own["axes"]),
         "n_monomers": grain.n_monomers,
+        "unloaded": int(own["unload"]),
     }
     return xr.Dataset({name: ("entry", np.array([value])) for name, value in entry.items()})
 
@@ -78,5 +101,9 @@ def run(job):
     job : ratd.pipeline.jobs.Job
     """
     grain = read_cluster(job.input[0])
-    entry = pulled(grain, job.settings, float(job.wildcards.phi), job.progress(f"seed {grain.seed}"))
+    checkpoint = Path(f"{job.output[0]}.checkpoint")
+    say = job.progress(f"seed {grain.seed}")
+    entry = pulled(grain, job.settings, float(job.wildcards.phi), say=say, checkpoint=checkpoint)
     job.write("tension_set", entry)
+    for path in (checkpoint, Path(f"{checkpoint}.pull")):
+        path.unlink(missing_ok=True)

@@ -3,6 +3,7 @@
 from dataclasses import fields
 
 import numpy as np
+import xarray as xr
 
 from ratd.aggregates.grain import Grain
 from ratd.base.checks import is_number
@@ -37,6 +38,8 @@ WINDOW = 4
 """Records over which the tension is averaged where its greatest value is looked for: 2 % in L."""
 BALANCE, LONG_BALANCE = 0.005, 0.05
 """Parts of what moved that the balance of energy may be off by, with explicit and with long steps."""
+UNLOADING_STRAIN = 2e-4
+"""ln L between two records while a box lets go of what presses on it."""
 REST_STEPS = 200
 """Steps over which the pressure of the aggregate at rest is averaged."""
 
@@ -46,6 +49,7 @@ def stretch(
     strain_rate=3e-6,
     *,
     axes="x",
+    unload=False,
     box_length=None,
     law=None,
     timestep_factor=TIMESTEP_FACTOR,
@@ -63,6 +67,9 @@ def stretch(
         The box grows with dL/dt = 2 C_v L/t_0.
     axes : {"x", "xyz"}
         Axes along which it grows; the others stay.
+    unload : bool
+        Whether the box first grows along all axes, at the same rate, until the aggregate does not press on it any more,
+        and the aggregate comes to rest there. Else what it presses with at rest is still there when the pull begins.
     box_length : float or (3,) array_like, optional
         Edge, or edges along x, y and z, of the box [m] that a `Grain` fills, by whose copies it is held.
     law, timestep_factor, long_steps, checkpoint
@@ -89,12 +96,14 @@ def stretch(
     ----------
     Tatsuuma, Kataoka & Tanaka (2019), ApJ 874, 159, as recalled. Whether they pull one axis or three is not known here.
     """
-    if axes not in AXES:
+    if not isinstance(axes, str) or axes not in AXES:
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
-    if not isinstance(compressed, Grain) and "state_monomer" not in compressed:
+    if not (isinstance(compressed, Grain) or isinstance(compressed, xr.Dataset) and "state_monomer" in compressed):
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
     if isinstance(compressed, Grain) != (box_length is not None):
         raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
+    if not isinstance(unload, bool):
+        raise InputError(f"unload is {unload!r}; it must be True or False.")
     if not (is_number(strain_rate) and strain_rate > 0.0):
         raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
     law = law_of(law, compression_law)
@@ -113,14 +122,20 @@ def stretch(
     )
     edges = np.array(periodic(box_length)[:3]) if filled else compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, attrs["time_unit"])
-    parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
     marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
 
-    state = _in_box(cluster, parts) if filled else state_of(compressed)
-    phi_start = cluster.volume / np.prod(edges) if filled else compressed["phi"].values[-1]
-    key = checkpoints.fingerprint(__name__, list(state), parts)
-    if checkpoints.load(checkpoint, key) is None:
-        state = _at_rest(state, Parts(law, periodic(edges), integrator))
+    still = Parts(law, periodic(edges), integrator)
+    state = _in_box(cluster, still) if filled else state_of(compressed)
+    key = checkpoints.fingerprint(__name__, list(state), still, axes, rate, unload)
+    loaded = checkpoints.load(checkpoint, key)
+    if loaded is not None:
+        at, width = COLUMNS["box_length"]
+        edges = loaded[1]["rows"][0][at : at + width]
+    else:
+        state = _at_rest(state, still)
+        if unload:
+            state, edges = _unloaded(state, edges, rate, still)
+    parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
 
     def tell(row, seconds_to_go):
         progress(row["phi"], -row["pressure_tensor"][0], seconds_to_go)
@@ -142,7 +157,7 @@ def stretch(
         {"units": "Pa", "long_name": "tension along the pulled axes"},
     )
     about = {"tensile_strength": pull[best], "phi_strength": _smooth(found["phi_mean"].values)[best]}
-    about |= {"phi_start": phi_start, "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
+    about |= {"phi_start": rows[0, COLUMNS["phi"][0]], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
     kept = {name: attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
@@ -172,6 +187,16 @@ def _smooth(values):
 
 def _plain(value):
     return value.item() if isinstance(value, np.generic) else value
+
+
+def _unloaded(state, edges, rate, still):
+    """The state at rest in a box so large that it does not press on it any more, and the edges of this box [m]."""
+    parts = still._replace(box=periodic(edges, np.full(3, rate)))
+    marks = np.arange(1, round(LONGEST / UNLOADING_STRAIN) + 1) * UNLOADING_STRAIN / rate
+    at = COLUMNS["pressure"][0]
+    state, _, _ = strain(state, parts, marks, stop=lambda rows: rows[-1, at] <= 0.0)
+    edges = np.array(parts.box.edges(state.scalar))
+    return _at_rest(state, parts._replace(box=periodic(edges))), edges
 
 
 def _at_rest(state, parts):

@@ -5,9 +5,27 @@ import xarray as xr
 
 from ratd.base.statistics import mean_of
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
-from ratd.experiments.compression.figures.common import COLOURS, power
+from ratd.experiments.compression.figures.common import COLOURS
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 from ratd.pipeline import io
+
+
+WAYS = {(1, 0): "one axis", (1, 1): "one axis, unloaded first", (3, 0): "three axes"}
+"""Axes that are pulled and whether the box lets go of the cluster before -> what it is called."""
+
+
+def main_pulls(entries):
+    """Rate and number of monomers of most pulls along one axis, (float, int)."""
+    own = entries.isel(entry=(entries["n_axes"].values == 1) & (entries["unloaded"].values == 0))
+    pairs = np.stack([own["strain_rate"].values, own["n_monomers"].values], axis=1)
+    every, number = np.unique(pairs, axis=0, return_counts=True)
+    rate, n = every[np.argmax(number)]
+    return float(rate), int(n)
+
+
+def nominal_phi(entries):
+    """Filling factors up to which clusters were compressed, rounded as a config has them."""
+    return np.round(entries["phi_compressed"].values, 3)
 
 
 def in_units(entries):
@@ -36,18 +54,20 @@ def tension(entries, spun=None):
                 spun["phi"][own], spun["strength"][own], marker, color=grey, ms=3, mew=0.6, label=f"{kind} spun up",
                 zorder=0,
             )  # fmt: skip
-    how = np.stack([entries["n_axes"].values, entries["strain_rate"].values, entries["n_monomers"].values], axis=1)
+    rate, n = main_pulls(entries)
+    alike = (entries["strain_rate"].values == rate) & (entries["n_monomers"].values == n)
     strength, _ = in_units(entries)
-    for k, (n_axes, rate, n) in enumerate(np.unique(how, axis=0)[::-1]):
-        own = (how == (n_axes, rate, n)).all(axis=1)
-        phi = np.round(entries["phi"].values[own], 4)
-        places = np.unique(phi)
-        mean = np.array([strength[own][phi == place].mean() for place in places])
-        error = np.array([mean_of(strength[own][phi == place])[1] for place in places])
-        label = f"{'one axis' if n_axes == 1 else 'three axes'}, N = {n:g}, " + rf"$C_\mathrm{{v}} = {power(rate)}$"
-        axes.errorbar(
-            places, mean, error, marker="os^Dv"[k % 5], color=COLOURS[k % 5], ls="none", capsize=2, label=label
-        )
+    phi = entries["phi"].values
+    how = np.stack([entries["n_axes"].values, entries["unloaded"].values], axis=1)
+    for (pulling, label), marker, colour in zip(WAYS.items(), "os^", COLOURS, strict=False):
+        own = alike & (how == pulling).all(axis=1)
+        every = nominal_phi(entries)
+        places = np.unique(every[own])
+        groups = [own & (every == place) for place in places]
+        mean, error = np.array([mean_of(strength[group]) for group in groups]).reshape(-1, 2).T
+        if len(places):
+            at = [phi[group].mean() for group in groups]
+            axes.errorbar(at, mean, error, marker=marker, color=colour, ls="none", capsize=2, label=label)
     x = np.geomspace(0.01, 0.6, 20)
     axes.plot(
         x, tensile_strength_tatsuuma2019(1.0, 1.0, x), color="black", lw=0.8, label=r"$0.951\,\phi^{1.8}$ (recalled)"
