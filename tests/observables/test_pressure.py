@@ -5,7 +5,7 @@ import pytest
 
 from ratd.base.materials import Material
 from ratd.drives.squeezing import mean_pressure_tensor, squeezing
-from ratd.engine.layout import MASS, STEPS, VX, X
+from ratd.engine.layout import MASS, STEPS, VIRIAL, VX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
 from ratd.engine.step import run, until
@@ -45,3 +45,24 @@ def test_of_two_pairs_in_motion():
     assert pressure(found) == pytest.approx(np.trace(wanted) / 3.0)
     # of a single step the mean is the same, but for the kinetic part, which it takes about the kick
     np.testing.assert_allclose(mean_pressure_tensor(state), found, rtol=1e-2)
+
+
+def test_sliding_adds_nothing_to_the_pressure():
+    """It is normal to the line between the centres, so that it shows in the shear components alone."""
+    pair, law = Pair(ICE, A, A), jkr(damping="none")
+    gap = 2 * A - 1.2 * pair.delta_0
+    box, step = periodic(2e-6), leapfrog(timestep=1e-13, damping="explicit")
+    velocity = np.array([[0.0, 0.05, 0.0], [0.0, -0.05, 0.0]])
+    contacts = np.array([[0, 1]])
+    position = np.array([[0.0, 0.0, 0.0], [gap, 0.0, 0.0]])
+    state = new_state(position, np.full(2, A), MATERIAL, contacts, law, box, step, velocity=velocity)
+    drive = squeezing()
+    state, _ = run(state, law, drive, box, step, until(steps=300))
+    before = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
+    state, _ = run(state, law, drive, box, step, until(steps=301))
+    d = before[0] - before[1]
+    length = np.linalg.norm(d)
+    normal = JKR().normal(pair, 2 * A - length)
+    virial = state.scalar[VIRIAL : VIRIAL + 6]
+    assert virial[:3].sum() == pytest.approx(length * normal, rel=1e-9)
+    assert abs(virial[3]) > 100 * abs(normal * d[0] * d[1] / length)

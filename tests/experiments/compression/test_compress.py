@@ -100,6 +100,7 @@ def test_long_steps_give_the_same_as_explicit_ones(cluster, run):
         assert work[0] == pytest.approx(work[1], rel=0.2)
 
 
+@pytest.mark.filterwarnings("ignore:the box shrinks so fast that inertia dominates")
 def test_long_steps_do_not_pull_at_a_loose_cluster():
     """One that has not met its copies: it has the pressure of its inertia alone, and only too long steps miss it."""
     loose = ratd.grow_bcca(128, material="silicate", seed=1)
@@ -176,6 +177,9 @@ def test_static_is_what_the_specification_says():
 def test_a_compression_that_is_too_fast_is_warned_of(cluster):
     with pytest.warns(UserWarning, match="inertia dominates: the compression is static from phi = 0.[0-9]+ on"):
         ratd.compress(cluster, 1e-3, 0.03)
+    # static from 0.03 on, which the run does not reach
+    with pytest.warns(UserWarning, match="inertia dominates: the compression is static from phi = 0.0[0-9]+ on"):
+        ratd.compress(cluster, 2e-5, 0.02)
 
 
 @pytest.mark.parametrize(
@@ -187,6 +191,8 @@ def test_a_compression_that_is_too_fast_is_warned_of(cluster):
         ({"until_phi": 1e-4}, "until_phi is 0.0001; it must be above"),
         ({"box_length": 1e-7}, "box_length is 1e-07 m; it must be at least 2e-07 m, a monomer"),
         ({"box_length": 5e-7}, "box_length is 5e-07 m; it must be at least .* the greatest extent of the cluster"),
+        ({"snapshots": 0.1}, "snapshots is 0.1; it must be a sequence of numbers above 0"),
+        ({"snapshots": [0.1, "x"]}, "snapshots is .* must be a sequence of numbers above 0"),
         ({"scheme": "other"}, "scheme is 'other'; allowed are homogeneous, as_printed"),
         ({"material": "x"}, "x"),
     ],

@@ -10,7 +10,8 @@ import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import findings, of_tension
+from ratd.experiments.compression.findings import findings
+from ratd.experiments.compression.pulls import of_tension
 from ratd.experiments.compression.tables import joined
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots

@@ -59,6 +59,35 @@ def test_from_where_on_the_pressure_is_above_the_line():
         assert np.isnan(strength.crosses_line(table_of(lambda phi, f=factor: f * P_0 * phi**3), 0.3).value)
 
 
+def test_from_where_on_an_energy_is_lost():
+    table = table_of(lambda phi: P_0 * phi**3)
+    table["dissipated_sliding"] = (("seed_number", "phi_bin"), np.tile(1e-13 * table["phi"].values ** 5, (5, 1)))
+    assert strength.lost_from(table, "sliding", 1e-13 * 0.2**5).value == pytest.approx([0.2])
+    assert strength.lost_from(table, "sliding", 1e-13 * 0.2**5).error == pytest.approx([0.0], abs=1e-12)
+    assert np.isnan(strength.lost_from(table, "sliding", 1.0).value).all()
+
+
+@pytest.mark.parametrize(
+    ("runs", "said"),
+    [
+        ([], "run is an empty list; it must be what ratd.compress returned"),
+        (5, "run is of type int; it must be"),
+        (xr.Dataset(), "run is the Dataset of something else; it must be"),
+    ],
+)
+def test_what_is_no_compression_has_no_strength(runs, said):
+    with pytest.raises(ratd.InputError, match=said):
+        ratd.compressive_strength(runs)
+
+
+def test_runs_of_several_materials_are_not_one_set():
+    runs = [xr.Dataset({"phi_mean": ("record", [0.1])}, attrs={"rolling_pressure": P}) for P in (P_0, 2 * P_0)]
+    with pytest.raises(
+        ratd.InputError, match="the runs have P_0 from 5e.05 to 1e.06 Pa; they may differ in their seeds"
+    ):
+        ratd.compressive_strength(runs)
+
+
 def test_runs_that_begin_later_count_as_nothing_or_not_at_all():
     table = table_of(lambda phi: P_0 * phi**3, seeds=2)
     table["pressure"].values[0, :10] = np.nan

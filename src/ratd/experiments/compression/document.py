@@ -15,8 +15,9 @@ from ratd.base.errors import FileError, InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
-from ratd.experiments.compression.findings import findings, spun_up
+from ratd.experiments.compression.findings import findings
 from ratd.experiments.compression.plan import load
+from ratd.experiments.compression.pulls import spun_up
 from ratd.experiments.compression.tables import joined
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -99,7 +100,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     entries : xarray.Dataset or None
         Pulled clusters.
     grains : dict or None
-        See `ratd.experiments.compression.findings.spun_up`.
+        See `ratd.experiments.compression.pulls.spun_up`.
     lammps, box : pandas.DataFrame or None
         See `ratd.experiments.compression.beside_lammps`.
     """

@@ -10,16 +10,15 @@ from ratd.aggregates.strength import (
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
-    midplane_tension,
     rolling_pressure,
     sound_speed_kataoka2013,
 )
 from ratd.base.materials import get_material
 from ratd.base.measured import Measured, median
-from ratd.base.statistics import jackknife_error, mean_of
+from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_lammps
-from ratd.experiments.compression.figures.tension import in_units, main_pulls, nominal_phi
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
+from ratd.experiments.compression.pulls import of_tension
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
@@ -31,6 +30,7 @@ from ratd.experiments.compression.strength import (
     far_slope_of_structure,
     fit_power_law,
     fit_with_limit,
+    lost_from,
     measured,
     of_means,
     of_same_clusters,
@@ -42,8 +42,10 @@ from ratd.experiments.compression.strength import (
     slope_of_structure,
 )
 
-__all__ = ["findings", "spun_up"]
+__all__ = ["findings"]
 
+SLIDING = 1e-16
+"""Energy [J] lost by sliding in a cluster at which it is said to begin: the least in the printed Fig. 8."""
 AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
 """Filling factors at which numbers are told."""
 LOW_RANGE = (0.01, 0.05)
@@ -52,8 +54,6 @@ STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping",
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
-TENSION_FROM = 0.05
-"""Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
 BY_SIZE = ("n_1024", "base", "n_16384")
@@ -109,6 +109,7 @@ def of_set(name, table):
         found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
     found["rolling_over_made"] = measured(overtakes(table, "rolling", "made", found["static"]))
     found["rolling_over_damping"] = measured(overtakes(table, "rolling", "damping", found["static"]))
+    found["sliding_from"] = measured(lost_from(table, "sliding", SLIDING))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = measured(overtakes(table, first, second))
     part = table["energy_residual"].values / table["work"].values
@@ -214,7 +215,33 @@ def of_closed_formulae():
         for phi in (0.001, 0.003, 0.005, 0.01, 0.02, 0.03):
             mach = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
             found[f"mach_{strain_rate:.0e}_{phi:g}"] = mach
-    return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
+    for name in MONOMER_RADIUS:
+        found |= {f"of_{name}.{key}": value for key, value in _constants(name).items()}
+    return found | _of_silicate() | {"phi_bcca": filling_factor_bcca(PAPER_N)}
+
+
+def _constants(name):
+    """Constants of a material, in the units of the page."""
+    own = get_material(name)
+    return {
+        "radius": 1e6 * MONOMER_RADIUS[name],
+        "gamma": 1e3 * own.surface_energy,
+        "E": 1e-9 * own.youngs_modulus,
+        "nu": own.poisson_number,
+        "density": own.density,
+        "xi": 1e9 * own.critical_rolling_displacement,
+    }
+
+
+def _of_silicate():
+    """Speed [cm/s] of a face of the box and of sound at phi = 0.01, and phi from which on the second is the greater."""
+    own, radius = get_material("silicate"), MONOMER_RADIUS["silicate"]
+    rate = box_rate(3e-7, time_unit(own, radius))
+    P_0 = rolling_pressure(own.surface_energy, own.critical_rolling_displacement, radius)
+    face = 100.0 * face_speed(rate, PAPER_N, radius, 0.01)
+    sound = 100.0 * float(sound_speed_kataoka2013(0.01, P_0, own.density))
+    # v_d goes as phi^(-1/3) and c_s as phi
+    return {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75}
 
 
 def of_pairs(sets):
@@ -273,113 +300,6 @@ def _near(table, phi):
 def _bin_at(table, phi):
     """Number of the bin of a filling factor in a table."""
     return int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
-
-
-def of_tension(entries):
-    """Strength over the formula of Tatsuuma et al. and the place of the peak, by way of pulling and phi.
-
-    Parameters
-    ----------
-    entries : xarray.Dataset
-        Of the kind ``tension_set``.
-
-    Returns
-    -------
-    dict
-        Slots ``tension_WAY.WHAT_PHI``, PHI being the filling factor of the compression. WAY is ``x`` or ``xyz`` for
-        what most pulls along one axis were made with (`main_pulls`); ``unloaded`` where the box let go of the cluster
-        first; ``rate_RATE`` and ``N_NUMBER`` where the pull had another rate or number of monomers. WHAT is ``over``
-        for these last three, the strength over that of the main pulls along one axis.
-    """
-    strength, formula = in_units(entries)
-    rate, n = main_pulls(entries)
-    rates, numbers, phi = entries["strain_rate"].values, entries["n_monomers"].values, nominal_phi(entries)
-    seed, unloaded = entries["seed"].values, entries["unloaded"].values == 1
-    one_axis, alike = entries["n_axes"].values == 1, (rates == rate) & (numbers == n)
-    main = one_axis & alike & ~unloaded
-    ways = {"x": main, "xyz": ~one_axis & alike & ~unloaded, "unloaded": one_axis & alike & unloaded}
-    for other in np.unique(rates[rates != rate]):
-        ways[f"rate_{other:.0e}"] = one_axis & ~unloaded & (rates == other) & (numbers == n)
-    for other in np.unique(numbers[numbers != n]):
-        ways[f"N_{other}"] = one_axis & ~unloaded & (rates == rate) & (numbers == other)
-    found = {"tension_x.rate": rate, "tension_x.N": n}
-    for way, own in ways.items():
-        for each in np.unique(phi[own]):
-            here = own & (phi == each)
-            peak = entries["phi_strength"].values / entries["phi"].values
-            pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
-            found |= {
-                f"tension_{way}.{each:g}": Measured(*mean_of((strength / formula)[here])),
-                f"tension_{way}.peak_{each:g}": Measured(*mean_of(peak[here])),
-                f"tension_{way}.n_{each:g}": int(here.sum()),
-                f"tension_{way}.held_{each:g}": int((strength[here] > 0.0).sum()),
-                f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
-                f"tension_{way}.start_{each:g}": Measured(*mean_of(entries["phi"].values[here])),
-            }
-            beside = main & (phi == each)
-            if way not in ("x", "xyz") and beside.any():
-                found[f"tension_{way}.over_{each:g}"] = _over(
-                    strength, seed, here, beside, same=not way.startswith("N")
-                )
-    fitted = main & (phi >= TENSION_FROM)
-    if len(np.unique(phi[fitted])) > 1:
-        found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])
-    return found
-
-
-def _over(values, seed, own, other, same):
-    """Mean of some values over that of others; of the same clusters where these are the same ones."""
-    if same:
-        common = np.intersect1d(seed[own], seed[other])
-        pairs = np.array([[values[each & (seed == one)][0] for each in (own, other)] for one in common])
-        return measured(of_means(pairs, lambda mean: mean[0] / mean[1]))
-    (one, one_error), (two, two_error) = mean_of(values[own]), mean_of(values[other])
-    return Measured(one / two, abs(one / two) * math.hypot(one_error / one, two_error / two))
-
-
-def _slope(x, y, seed):
-    """Slope of y over x by least squares, with the error of leaving one seed out at a time."""
-    left = [seed != one for one in np.unique(seed)]
-    whole = len(left) > 1 and all(len(np.unique(x[own])) > 1 for own in left)
-    slopes = [np.polyfit(x[own], y[own], 1)[0] for own in left] if whole else []
-    return Measured(float(np.polyfit(x, y, 1)[0]), jackknife_error(np.array(slopes)))
-
-
-def spun_up(grains, mark="omega_disr"):
-    """Tensile strengths that the disruption of spun-up grains implies.
-
-    Parameters
-    ----------
-    grains : pandas.DataFrame
-        Table of the ensemble of the spin-up.
-    mark : str
-        Which angular velocity.
-
-    Returns
-    -------
-    dict
-        ``phi``, ``strength`` (S a/gamma), ``type``: (k,) arrays, one number a material, type and size, means over
-        seeds; a is the mean radius of the monomers.
-
-    Notes
-    -----
-    S is the mean tension across the plane through the axis of a porous sphere of the grain's mass and filling factor
-    that turns at the mark (`midplane_tension`).
-    """
-    grains = grains[grains[mark].notna()]
-    gamma = grains["material"].map(lambda name: get_material(name).surface_energy).to_numpy(float)
-    density = grains["material"].map(lambda name: get_material(name).density).to_numpy(float)
-    phi = grains["filling_factor"].to_numpy(float)
-    outer = grains["a_eff"].to_numpy(float) * phi ** (-1.0 / 3.0)
-    tension = midplane_tension(grains[mark].to_numpy(float), density, phi, outer)
-    strength = tension * grains["mean_monomer_radius"].to_numpy(float) / gamma
-    own = grains.assign(strength=strength, size=np.round(grains["a_eff"] / 1e-9))
-    cells = own.groupby(["material", "type", "size"], as_index=False)[["filling_factor", "strength"]].mean()
-    return {
-        "phi": cells["filling_factor"].to_numpy(),
-        "strength": cells["strength"].to_numpy(),
-        "type": cells["type"].to_numpy(),
-    }
 
 
 def verdicts(values, sets):

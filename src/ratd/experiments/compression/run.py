@@ -42,7 +42,7 @@ LONG_BALANCE = {0.05: 0.05, 0.1: 0.02}
 EVENTS = 100
 """Contacts whose energy is taken in place of both where they are less."""
 NOT_STATIC = 0.1
-"""A run is warned of when it is static only from this filling factor on."""
+"""A run is warned of when it is static only from this filling factor on, or not at all."""
 
 
 class Cluster:
@@ -132,7 +132,7 @@ def compress(
     scheme : {"homogeneous", "as_printed"}
         See `ratd.periodic`.
     snapshots : sequence of float
-        Filling factors at which positions are kept.
+        Filling factors at which positions are kept; those that the run does not pass are left out.
     balance : bool
         Whether the run ends with an error when the balance of energy is off by more than `BALANCE` allows.
     checkpoint : path-like, optional
@@ -159,7 +159,7 @@ def compress(
     Warns
     -----
     UserWarning
-        If inertia dominates up to phi = 0.1.
+        If inertia dominates up to phi = 0.1, or to `until_phi` where this is less.
 
     References
     ----------
@@ -175,7 +175,8 @@ def compress(
         cluster.grain.material, cluster.radius, cluster.time_unit, timestep_factor, long_steps, strain_rate
     )
     parts = Parts(law, box, first_integrator)
-    static = _static_from(cluster, box)
+    static = _static_from(cluster, box, until_phi)
+    snapshots = _filling_factors("snapshots", snapshots)
 
     number = math.ceil(math.log(until_phi / first) / math.log(RECORD_STEP))
     phi = first * np.exp(np.log(until_phi / first) * np.arange(1, number + 1) / number)
@@ -262,12 +263,20 @@ def _box(cluster, strain_rate, until_phi, length, scheme):
     return periodic(length, box_rate(strain_rate, cluster.time_unit), scheme=scheme), first, until_phi
 
 
-def _static_from(cluster, box):
+def _filling_factors(name, values):
+    if isinstance(values, str) or not (
+        np.ndim(values) == 1 and all(is_number(value) and value > 0.0 for value in values)
+    ):
+        raise InputError(f"{name} is {values!r}; it must be a sequence of numbers above 0.")
+    return [float(value) for value in values]
+
+
+def _static_from(cluster, box, until_phi):
     """Filling factor from which on the compression is static; a warning where it is not for most of the way."""
     grain = cluster.grain
     about = grain.n_monomers, cluster.radius, grain.material.density, cluster.rolling_pressure
     static = static_from(box.rate_x, *about)
-    if static > NOT_STATIC:
+    if static > min(NOT_STATIC, until_phi):
         warnings.warn(
             f"the box shrinks so fast that inertia dominates: the compression is static from phi = {static:.2g} on; "
             "take a lower strain_rate",

@@ -19,6 +19,7 @@ __all__ = [
     "crosses_line",
     "fit_power_law",
     "fit_with_limit",
+    "lost_from",
     "mean_pressure",
     "measured",
     "of_means",
@@ -236,6 +237,22 @@ def share_at(table, way, phi):
     return of_means(lost[np.isfinite(lost).all(axis=1)], lambda mean: mean[DISSIPATED.index(way)] / mean.sum())
 
 
+def lost_from(table, way, energy):
+    """Filling factor at which clusters have lost an energy [J] one way, `Fit` of one number; NaN where they do not."""
+    phi = table["phi"].values
+    lost = table[f"dissipated_{way}"].values
+
+    def reached(own):
+        mean = np.where(np.isfinite(lost[own]).all(axis=0), lost[own].mean(axis=0), 0.0)
+        first = int(np.argmax(mean >= energy))
+        if not 0 < first or mean[first - 1] <= 0.0:
+            return phi[first] if mean[first] >= energy else np.nan
+        pair = slice(first - 1, first + 1)
+        return np.exp(np.interp(np.log(energy), np.log(mean[pair]), np.log(phi[pair])))
+
+    return of_clusters(len(lost), reached)
+
+
 def overtakes(table, first, second, low=0.02):
     """Filling factor from which on one way dissipates faster than another; NaN where it never does.
 
@@ -364,9 +381,11 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     Raises
     ------
     InputError
-        If no run covers the range.
+        If there is no run, one is no compression, they are of several materials or sizes of monomers, or none covers
+        the range.
     """
     found = list(run) if isinstance(run, list | tuple) else [run]
+    _check_runs(found)
     first = min(bins(each["phi_mean"].values[:1])[0] for each in found)
     last = max(bins(each["phi_mean"].values[-1:])[0] for each in found)
     table = xr.Dataset({"phi": ("phi_bin", BIN ** (np.arange(first, last + 1) + 0.5))})
@@ -380,3 +399,20 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     values = dict(zip(names, fit.value.tolist(), strict=True))
     errors = dict(zip([f"{name}_error" for name in names], fit.error.tolist(), strict=True))
     return {**values, **errors, "n": fit.n}
+
+
+def _check_runs(runs):
+    """Raise InputError unless there are runs of `ratd.compress`, all of the same rolling pressure."""
+    allowed = "it must be what ratd.compress returned, or a list of these"
+    if not runs:
+        raise InputError(f"run is an empty list; {allowed}.")
+    for one in runs:
+        if not isinstance(one, xr.Dataset) or "rolling_pressure" not in one.attrs or "phi_mean" not in one:
+            what = "the Dataset of something else" if isinstance(one, xr.Dataset) else f"of type {type(one).__name__}"
+            raise InputError(f"run is {what}; {allowed}.")
+    every = sorted({float(one.attrs["rolling_pressure"]) for one in runs})
+    if not np.allclose(every, every[0], rtol=1e-9):
+        raise InputError(
+            f"the runs have P_0 from {every[0]:.4g} to {every[-1]:.4g} Pa; they may differ in their seeds alone, not "
+            "in material or radius."
+        )

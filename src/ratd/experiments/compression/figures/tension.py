@@ -6,32 +6,13 @@ import xarray as xr
 from ratd.base.statistics import mean_of
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.compression.figures.common import COLOURS
+from ratd.experiments.compression.pulls import in_units, main_pulls, nominal_phi
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
 
 WAYS = {(1, 0): "one axis", (1, 1): "one axis, unloaded first", (3, 0): "three axes"}
 """Axes that are pulled and whether the box lets go of the cluster before -> what it is called."""
-
-
-def main_pulls(entries):
-    """Rate and number of monomers of most pulls along one axis, (float, int)."""
-    own = entries.isel(entry=(entries["n_axes"].values == 1) & (entries["unloaded"].values == 0))
-    pairs = np.stack([own["strain_rate"].values, own["n_monomers"].values], axis=1)
-    every, number = np.unique(pairs, axis=0, return_counts=True)
-    rate, n = every[np.argmax(number)]
-    return float(rate), int(n)
-
-
-def nominal_phi(entries):
-    """Filling factors up to which clusters were compressed, rounded as a config has them."""
-    return np.round(entries["phi_compressed"].values, 3)
-
-
-def in_units(entries):
-    """Strength over gamma/r_0, and the same by the formula, of entries of the kind ``tension_set``."""
-    unit = entries["surface_energy"] / entries["monomer_radius"]
-    return (entries["strength"] / unit).values, tensile_strength_tatsuuma2019(1.0, 1.0, entries["phi"].values)
 
 
 @styled
@@ -48,7 +29,7 @@ def tension(entries, spun=None):
     figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, "tensile strength")
     axes = figure.subplots()
     if spun is not None:
-        for kind, marker, grey in zip(np.unique(spun["type"]), ".x+", ("#777777", "#999999", "#BBBBBB"), strict=False):
+        for kind, marker, grey in zip(np.unique(spun["type"]), ".x+", ("#444444", "#777777", "#A0A0A0"), strict=False):
             own = spun["type"] == kind
             axes.plot(
                 spun["phi"][own], spun["strength"][own], marker, color=grey, ms=3, mew=0.6, label=f"{kind} spun up",
@@ -59,9 +40,9 @@ def tension(entries, spun=None):
     strength, _ = in_units(entries)
     phi = entries["phi"].values
     how = np.stack([entries["n_axes"].values, entries["unloaded"].values], axis=1)
+    every = nominal_phi(entries)
     for (pulling, label), marker, colour in zip(WAYS.items(), "os^", COLOURS, strict=False):
         own = alike & (how == pulling).all(axis=1)
-        every = nominal_phi(entries)
         places = np.unique(every[own])
         groups = [own & (every == place) for place in places]
         mean, error = np.array([mean_of(strength[group]) for group in groups]).reshape(-1, 2).T
