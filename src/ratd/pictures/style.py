@@ -138,6 +138,8 @@ def save(figure, *paths):
 def logarithmic(axis, least=0.6, labelled=None):
     """Make the limits of a logarithmic axis fit for reading: a least width, and numbers that do not crowd.
 
+    All numbers of an axis are plain ones, or all are powers of 10 where one that is labelled has more than four digits.
+
     Parameters
     ----------
     axis : matplotlib.axis.Axis
@@ -157,17 +159,25 @@ def logarithmic(axis, least=0.6, labelled=None):
         labelled = () if high - low >= 2 else (2, 5) if high - low > 0.55 else (2, 3, 4, 5, 7)
     axis.set_major_locator(LogLocator(subs=(1,)))
     axis.set_minor_locator(LogLocator(subs=range(2, 10)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: _power_text(value)))
-    axis.set_minor_formatter(FuncFormatter(lambda value, _: _power_text(value, labelled)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _tick_text(value, _plain(axis, labelled))))
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: _tick_text(value, _plain(axis, labelled), labelled)))
 
 
-def _power_text(value, labelled=(1,)):
+def _plain(axis, labelled):
+    """Whether no number of a logarithmic axis is less than 0.001 or has more than four digits."""
+    low, high = np.log10(np.sort(axis.get_view_interval()))
+    if not labelled:  # powers of 10 alone
+        low, high = np.ceil(low - 1e-9), np.floor(high + 1e-9)
+    return low > -3.0 - 1e-6 and high < 4.0 - 1e-6
+
+
+def _tick_text(value, plain, labelled=(1,)):
     """Text of a tick m 10^e of a logarithmic axis, empty unless m is to be labelled."""
     exponent = int(np.floor(np.log10(value) + 1e-9))
     digit = round(value / 10.0**exponent)
     if digit not in labelled:
         return ""
-    if -2 <= exponent <= 3:
+    if plain:
         return f"{value:g}"
     return f"$10^{{{exponent}}}$" if digit == 1 else rf"${digit}\times10^{{{exponent}}}$"
 

@@ -19,7 +19,7 @@ def panel(axes, table, text):
             phi, np.where(rate[way] > 0.0, rate[way], np.nan) / n, color=colour, ls=dash, label=NAMES.get(way, way)
         )
     axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-14), xlim=(phi[0], 0.5))
-    axes.text(0.04, 0.04, text, transform=axes.transAxes)
+    axes.set_title(text)
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
 
