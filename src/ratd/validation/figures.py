@@ -154,7 +154,7 @@ def late_coriolis(table):
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=0)
     axes.set_xscale("log")
     logarithmic(axes.xaxis)
-    axes.set_xlabel("$\\omega$ of the first loss over that of the consistent model")
+    axes.set_xlabel("$\\omega$ of the first loss over that of the driven model")
     axes.set_ylabel("over that of a solid grain, less 1 [%]")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

@@ -76,7 +76,7 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
     panels[0].set_ylabel("$\\omega$ over that of the paper\nfor the same grain")
     handles = [Line2D([], [], color="black", lw=0.8, label="the paper: Eq. 33 with Table 3")]
     if firm is not None:
-        handles.append(Line2D([], [], color="black", label="bound: the weakest cut gives way", **BOUND))
+        handles.append(Line2D([], [], color="black", label="firm bound: the contacts can hold no more", **BOUND))
     if len(panels) == 1:
         label_ends(panels[0], ends)
     else:

@@ -137,6 +137,7 @@ def of_lammps(driven, default):
             f"lammps.{way} {mark} grains": len(part),
             f"lammps.{way} {mark} largest": part["a_eff"].max() / NM,
         }
+        values |= {f"lammps.{way} {mark} {kind}": median(own["ratio"]) for kind, own in part.groupby("type")}
     return values
 
 

@@ -180,6 +180,8 @@ def what_contacts_hold(grown, firm, table):
         "bound.largest below": float(grown.loc[~above, "nm"].max()),
         "bound.load": float(load.median()),
         "bound.small omega": float((grown["printed"] < 5e8).mean()),
+        "bound.least printed": float(grown["printed"].min()),
+        "bound.most printed": float(grown["printed"].max()),
         "bound.spun": len(table),
     }
     beyond = table.loc[table["omega_first_loss"] > table["firm_bound"], "type"]
