@@ -154,6 +154,7 @@ def stretch(
     strain_rate: float = 3e-06,
     *,
     axes: Literal["x", "xyz"] = "x",
+    unload: bool = False,
     box_length: Any = None,
     law: Any = None,
     timestep_factor: float = 0.14,

@@ -234,14 +234,15 @@ def _constants(name):
 
 
 def _of_silicate():
-    """Speed [cm/s] of a face of the box and of sound at phi = 0.01, and phi from which on the second is the greater."""
+    """Speed [cm/s] of a face of the box and of sound at phi = 0.01, their ratio at others, and phi where it is 1."""
     own, radius = get_material("silicate"), MONOMER_RADIUS["silicate"]
     rate = box_rate(3e-7, time_unit(own, radius))
     P_0 = rolling_pressure(own.surface_energy, own.critical_rolling_displacement, radius)
     face = 100.0 * face_speed(rate, PAPER_N, radius, 0.01)
     sound = 100.0 * float(sound_speed_kataoka2013(0.01, P_0, own.density))
     # v_d goes as phi^(-1/3) and c_s as phi
-    return {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75}
+    over = {f"mach_silicate_{phi:g}": face / sound * (phi / 0.01) ** (-4 / 3) for phi in (0.05, 0.1, 0.2)}
+    return {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75} | over
 
 
 def of_pairs(sets):

@@ -32,7 +32,14 @@ def figure4(tables):
     # below the legend, and over the curves
     for axes, top in ((above, 0.68), (below, 1.0)):
         axes.axvline(start, ymax=top, color=COLOURS[0], lw=0.6, ls=":")
-    below.text(start, 0.96, r" inertia below 5 % $\rightarrow$", color=COLOURS[0], transform=below.get_xaxis_transform(), va="top")
+    below.text(
+        start,
+        0.96,
+        r" inertia below 5 % $\rightarrow$",
+        color=COLOURS[0],
+        transform=below.get_xaxis_transform(),
+        va="top",
+    )
     draw_line(above, tables[-1])
     # little of what is not static: there inertia is seen, and chance
     above.set_xlim(left=0.3 * start)
