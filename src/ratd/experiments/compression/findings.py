@@ -80,6 +80,7 @@ def of_set(name, table):
     found["E_roll"] = found["P0"] * table["monomer_radius"].item() ** 3
     found["t_0"] = table["time_unit"].item()
     found["start"] = float(np.mean(table["phi_start"].values))
+    found["latest_start"] = float(np.max(table["phi_start"].values))
     # a run can be static from the start
     found["static_seen"] = max(found["static"], found["start"])
     gyration, error = table["mean_square_gyration"].item(), table["mean_square_gyration_error"].item()
@@ -212,7 +213,7 @@ def of_closed_formulae():
     # of the faces of the box, over the speed of sound
     for strain_rate in (1e-7, 3e-7, 3e-8):
         rate = box_rate(strain_rate, time_unit(ice, radius))
-        for phi in (0.001, 0.003, 0.005, 0.01, 0.02, 0.03):
+        for phi in (0.001, 0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
             mach = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
             found[f"mach_{strain_rate:.0e}_{phi:g}"] = mach
     for name in MONOMER_RADIUS:
@@ -258,7 +259,7 @@ def of_pairs(sets):
         if {name, beside} <= set(sets):
             found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]
             same = of_same_clusters([sets[name], sets[beside]])[1]
-            for phi in (0.003, 0.005, 0.01, 0.02, 0.03):
+            for phi in (0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
                 if phi * NEAR < sets[name]["phi"].values[-1]:
                     found[f"{name}.beside_{phi:g}"] = measured(ratio_at(same, phi))
                     # looser ones have bins without pressure
