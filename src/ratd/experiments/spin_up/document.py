@@ -199,7 +199,7 @@ def findings(data, fits):
         fragments = data.fragments[drive]
         values |= ensemble.of_drive(letter, table) | ensemble.of_table_3(letter, fits[drive])
         values |= claims.claims(letter, table, fragments) | of_shares(letter, fragments)
-    values |= of_law(data.driven) | ensemble.marks_compared(data.driven)
+    values |= of_law(data.driven) | ensemble.marks_compared(data.driven) | ensemble.table_3_by_mark(data.driven)
     values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
     values |= beside.of_formulae(data.tables["formulae"])

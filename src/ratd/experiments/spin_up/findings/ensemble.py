@@ -14,14 +14,14 @@ from ratd.base.materials import get_material
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
-from ratd.experiments.spin_up.eq33 import eq33_omega
+from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import slopes
 from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
     "CLASSES", "MARK", "MARKS", "beside_print", "marks_compared", "of_drive", "of_table_3",
-    "strength_omega", "what_contacts_hold",
+    "strength_omega", "table_3_by_mark", "what_contacts_hold",
 ]  # fmt: skip
 
 MARK = "omega_mass_75"
@@ -137,6 +137,26 @@ def of_table_3(letter, fit):
     alphas = fit["alpha"].values
     values[f"{letter}.alpha least"], values[f"{letter}.alpha most"] = float(alphas.min()), float(alphas.max())
     return values
+
+
+def table_3_by_mark(table):
+    """A and alpha of Eq. 33, fitted to each mark of the driven grains but the paper's own, as texts, and their sign.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As `beside_print` returns it.
+    """
+    values, most, held = {}, [], []
+    for mark, short in MARKS.items():
+        if mark != "omega_disr":
+            found = of_table_3("d", fit_ensemble(table, PAPER_MEAN_RADIUS, mark=mark))
+            own = {name: value for name, value in found.items() if name.endswith((" A", " alpha"))}
+            values |= {f"{name} {short}": value for name, value in own.items() if name.startswith("d.table3 ")}
+            most.append(found["d.alpha most"])
+            held.append(found["d.table3 held"])
+    sign = "negative" if max(most) < 0.0 else "not always negative"
+    return values | {"d.alpha by mark": sign, "d.held by mark": "none" if not any(held) else "some"}
 
 
 def strength_omega(table):
