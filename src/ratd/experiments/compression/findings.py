@@ -330,6 +330,9 @@ def verdicts(values, sets):
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
+    slow = [values[f"rate_{rate}.paired"].value for rate in ("1e-7", "1e-6", "3e-6") if f"rate_{rate}.paired" in values]
+    if slow:
+        found["rates"] = "a tenth" if max(abs(ratio - 1.0) for ratio in slow) < 0.15 else "more"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
@@ -343,12 +346,15 @@ def _same(values, name, beside):
 
 def of_balances(sets, values):
     """The worst balance of energy from 0.1 on: of sets whose long steps land in short ones, and of earlier ones."""
-    found = {}
+    groups = {"landing": [], "earlier": []}
     for name, table in sets.items():
-        if f"{name}.residual_0.1" in values and "SemiImplicit" in table.attrs["integrator"]:
-            group = "landing" if "landing=" in table.attrs["integrator"] else "earlier"
-            found.setdefault(f"{group}.residual", []).append(values[f"{name}.residual_0.1"])
-    return {name: max(residuals) for name, residuals in found.items()}
+        if "SemiImplicit" in table.attrs["integrator"]:
+            groups["landing" if "landing=" in table.attrs["integrator"] else "earlier"].append(name)
+    found = {f"{group}.sets": ", ".join(f"`{name}`" for name in names) for group, names in groups.items() if names}
+    for group, names in groups.items():
+        residuals = [values[f"{name}.residual_0.1"] for name in names if f"{name}.residual_0.1" in values]
+        found |= {f"{group}.residual": max(residuals)} if residuals else {}
+    return found
 
 
 def findings(sets, entries, spun, lammps=None, box=None):
