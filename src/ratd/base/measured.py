@@ -7,7 +7,7 @@ import numpy as np
 
 from ratd.base.statistics import mean_of, median_of
 
-__all__ = ["Measured", "geometric_mean", "median"]
+__all__ = ["Measured", "geometric_mean", "median", "quotient"]
 
 
 class Measured(NamedTuple):
@@ -15,6 +15,13 @@ class Measured(NamedTuple):
 
     value: float
     error: float = math.nan
+
+
+def quotient(one, other):
+    """One number over another whose error is independent of its own, `Measured`; both are (value, error)."""
+    (value, error), (below, error_below) = one, other
+    found = value / below
+    return Measured(found, abs(found) * math.hypot(error / value, error_below / below))
 
 
 def median(values, cell=None, group=None):

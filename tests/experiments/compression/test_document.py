@@ -11,8 +11,8 @@ from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
 from ratd.experiments.compression.findings import findings
-from ratd.experiments.compression.pulls import of_tension
 from ratd.experiments.compression.tables import joined
+from ratd.experiments.compression.tension_findings import of_tension
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
 

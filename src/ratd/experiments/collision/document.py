@@ -5,6 +5,7 @@ import pandas as pd
 
 from ratd.aggregates.mrn import free_samples, moment_of_length, sample_length
 from ratd.base.materials import MATERIALS
+from ratd.base.measured import quotient
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.likeness import is_equal
@@ -177,8 +178,7 @@ def _recipe(thresholds):
     if not {"mrn", "353nm"} <= set(own.index):
         return {}
     (true, error), (equal, other) = (own.loc[name, ["velocity", "error"]] for name in ("mrn", "353nm"))
-    ratio = equal / true
-    spread = ratio * np.hypot(error / true, other / equal)
+    ratio, spread = quotient((equal, other), (true, error))
     return {"too low": f"{100 * (1 - ratio):.0f} ± {100 * spread:.0f} %"}
 
 

@@ -17,7 +17,7 @@ from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
 from ratd.experiments.compression.findings import findings
 from ratd.experiments.compression.plan import load
-from ratd.experiments.compression.pulls import spun_up
+from ratd.experiments.compression.tension_findings import spun_up
 from ratd.experiments.compression.tables import joined
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -100,7 +100,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     entries : xarray.Dataset or None
         Pulled clusters.
     grains : dict or None
-        See `ratd.experiments.compression.pulls.spun_up`.
+        See `ratd.experiments.compression.tension_findings.spun_up`.
     lammps, box : pandas.DataFrame or None
         See `ratd.experiments.compression.beside_lammps`.
     """

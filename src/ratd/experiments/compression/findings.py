@@ -14,11 +14,11 @@ from ratd.aggregates.strength import (
     sound_speed_kataoka2013,
 )
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured, median
+from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
-from ratd.experiments.compression.pulls import of_tension
+from ratd.experiments.compression.tension_findings import of_tension
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
@@ -212,13 +212,18 @@ def of_closed_formulae():
     found["sound"] = 100.0 * float(sound_speed_kataoka2013(1.0, P_0, ice.density))
     # of the faces of the box, over the speed of sound
     for strain_rate in (1e-7, 3e-7, 3e-8):
-        rate = box_rate(strain_rate, time_unit(ice, radius))
         for phi in (0.001, 0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
-            mach = 100.0 * face_speed(rate, PAPER_N, radius, phi) / (found["sound"] * phi)
-            found[f"mach_{strain_rate:.0e}_{phi:g}"] = mach
+            face, sound = _face_and_sound("ice", strain_rate, phi)
+            found[f"mach_{strain_rate:.0e}_{phi:g}"] = face / sound
+    for phi in (0.05, 0.1):
+        face, sound = _face_and_sound("silicate", 3e-7, phi)
+        found[f"mach_silicate_{phi:g}"] = face / sound
+    face, sound = _face_and_sound("silicate", 3e-7, 0.01)
+    # v_d goes as phi^(-1/3) and c_s as phi
+    found |= {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75}
     for name in MONOMER_RADIUS:
         found |= {f"of_{name}.{key}": value for key, value in _constants(name).items()}
-    return found | _of_silicate() | {"phi_bcca": filling_factor_bcca(PAPER_N)}
+    return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
 
 
 def _constants(name):
@@ -234,16 +239,12 @@ def _constants(name):
     }
 
 
-def _of_silicate():
-    """Speed [cm/s] of a face of the box and of sound at phi = 0.01, their ratio at others, and phi where it is 1."""
-    own, radius = get_material("silicate"), MONOMER_RADIUS["silicate"]
-    rate = box_rate(3e-7, time_unit(own, radius))
+def _face_and_sound(name, strain_rate, phi):
+    """Speed of a face of the box, with as many monomers as in the paper, and of sound in the cluster [cm/s]."""
+    own, radius = get_material(name), MONOMER_RADIUS[name]
     P_0 = rolling_pressure(own.surface_energy, own.critical_rolling_displacement, radius)
-    face = 100.0 * face_speed(rate, PAPER_N, radius, 0.01)
-    sound = 100.0 * float(sound_speed_kataoka2013(0.01, P_0, own.density))
-    # v_d goes as phi^(-1/3) and c_s as phi
-    over = {f"mach_silicate_{phi:g}": face / sound * (phi / 0.01) ** (-4 / 3) for phi in (0.05, 0.1, 0.2)}
-    return {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75} | over
+    face = face_speed(box_rate(strain_rate, time_unit(own, radius)), PAPER_N, radius, phi)
+    return 100.0 * face, 100.0 * float(sound_speed_kataoka2013(phi, P_0, own.density))
 
 
 def of_pairs(sets):
@@ -282,9 +283,7 @@ def _by_size(sets, name, larger, every, word="larger"):
     found = {}
     for phi in every:
         own, other = (measured(ratio_at(sets[each], phi)) for each in (name, larger))
-        ratio = own.value / other.value
-        error = abs(ratio) * math.hypot(own.error / own.value, other.error / other.value)
-        found[f"{name}.over_{word}_{phi:g}"] = Measured(ratio, error)
+        found[f"{name}.over_{word}_{phi:g}"] = quotient(own, other)
     return found
 
 
@@ -345,16 +344,19 @@ def _same(values, name, beside):
 
 
 def of_balances(sets, values):
-    """The worst balance of energy from 0.1 on: of sets whose long steps land in short ones, and of earlier ones."""
-    groups = {"landing": [], "earlier": []}
+    """The worst balance of energy from 0.1 on: of sets whose long steps land in short ones, and of earlier ones, which
+    are named."""
+    found, earlier = {}, []
     for name, table in sets.items():
-        if "SemiImplicit" in table.attrs["integrator"]:
-            groups["landing" if "landing=" in table.attrs["integrator"] else "earlier"].append(name)
-    found = {f"{group}.sets": ", ".join(f"`{name}`" for name in names) for group, names in groups.items() if names}
-    for group, names in groups.items():
-        residuals = [values[f"{name}.residual_0.1"] for name in names if f"{name}.residual_0.1" in values]
-        found |= {f"{group}.residual": max(residuals)} if residuals else {}
-    return found
+        if "SemiImplicit" not in table.attrs["integrator"]:
+            continue
+        group = "landing" if "landing=" in table.attrs["integrator"] else "earlier"
+        if group == "earlier":
+            earlier.append(name)
+        if f"{name}.residual_0.1" in values:
+            found.setdefault(f"{group}.residual", []).append(values[f"{name}.residual_0.1"])
+    found = {name: max(residuals) for name, residuals in found.items()}
+    return found | {"earlier.sets": ", ".join(f"`{name}`" for name in earlier)} if earlier else found
 
 
 def findings(sets, entries, spun, lammps=None, box=None):
@@ -387,10 +389,8 @@ def findings(sets, entries, spun, lammps=None, box=None):
         )
     if {SMALL, "xi_2", "xi_32"} <= set(sets):
         for name, times in ((SMALL, 4.0), ("xi_32", 16.0)):
-            own, least = values[f"{name}.ratio_0.48"], values["xi_2.ratio_0.48"]
-            ratio = times * own.value / least.value
-            parts = own.error / own.value, least.error / least.value
-            values[f"xi_p48_{'8' if name == SMALL else '32'}"] = Measured(ratio, ratio * math.hypot(*parts))
+            over = quotient(values[f"{name}.ratio_0.48"], values["xi_2.ratio_0.48"])
+            values[f"xi_p48_{'8' if name == SMALL else '32'}"] = Measured(times * over.value, times * over.error)
     values["line_silicate_024"] = (
         float(compressive_strength_kataoka2013(0.24, values["silicate.P0"])) if "silicate" in sets else math.nan
     )

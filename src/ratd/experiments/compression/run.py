@@ -167,6 +167,7 @@ def compress(
     """
     cluster = Cluster(cluster, material)
     strain_rate = _positive("strain_rate", strain_rate)
+    snapshots = _filling_factors(snapshots)
     box, first, until_phi = _box(cluster, strain_rate, until_phi, box_length, scheme)
     law = law_of(law, compression_law)
     if long_steps is not None:
@@ -176,7 +177,6 @@ def compress(
     )
     parts = Parts(law, box, first_integrator)
     static = _static_from(cluster, box, until_phi)
-    snapshots = _filling_factors("snapshots", snapshots)
 
     number = math.ceil(math.log(until_phi / first) / math.log(RECORD_STEP))
     phi = first * np.exp(np.log(until_phi / first) * np.arange(1, number + 1) / number)
@@ -263,12 +263,10 @@ def _box(cluster, strain_rate, until_phi, length, scheme):
     return periodic(length, box_rate(strain_rate, cluster.time_unit), scheme=scheme), first, until_phi
 
 
-def _filling_factors(name, values):
-    if isinstance(values, str) or not (
-        np.ndim(values) == 1 and all(is_number(value) and value > 0.0 for value in values)
-    ):
-        raise InputError(f"{name} is {values!r}; it must be a sequence of numbers above 0.")
-    return [float(value) for value in values]
+def _filling_factors(snapshots):
+    if np.ndim(snapshots) != 1 or not all(is_number(phi) and phi > 0.0 for phi in snapshots):
+        raise InputError(f"snapshots is {snapshots!r}; it must be a sequence of numbers above 0.")
+    return [float(phi) for phi in snapshots]
 
 
 def _static_from(cluster, box, until_phi):

@@ -200,9 +200,14 @@ def crosses_line(table, high):
         if not len(below) or below[-1] == len(phi) - 1:
             return np.nan
         pair = slice(below[-1], below[-1] + 2)
-        return np.exp(np.interp(1.0, mean[pair], np.log(phi[pair])))
+        return _crossing(phi[pair], mean[pair], 1.0)
 
     return of_means(ratio, fit)
+
+
+def _crossing(phi, values, wanted):
+    """Where values that rise, straight in ln phi between two filling factors, are the wanted one."""
+    return np.exp(np.interp(wanted, values, np.log(phi)))
 
 
 def rates(table, ways, own=slice(None)):
@@ -244,11 +249,13 @@ def lost_from(table, way, energy):
 
     def reached(own):
         mean = np.where(np.isfinite(lost[own]).all(axis=0), lost[own].mean(axis=0), 0.0)
-        first = int(np.argmax(mean >= energy))
-        if not 0 < first or mean[first - 1] <= 0.0:
-            return phi[first] if mean[first] >= energy else np.nan
-        pair = slice(first - 1, first + 1)
-        return np.exp(np.interp(np.log(energy), np.log(mean[pair]), np.log(phi[pair])))
+        reaching = np.flatnonzero(mean >= energy)
+        if not len(reaching):
+            return np.nan
+        first = reaching[0]
+        if first == 0 or mean[first - 1] <= 0.0:
+            return phi[first]
+        return _crossing(phi[first - 1 : first + 1], np.log(mean[first - 1 : first + 1]), np.log(energy))
 
     return of_clusters(len(lost), reached)
 
@@ -274,7 +281,7 @@ def overtakes(table, first, second, low=0.02):
         if last < 0 or one[last] <= 0.0 or other[last + 1] <= 0.0:
             return phi[last + 1]
         ahead = np.log(one[last : last + 2] / other[last : last + 2])
-        return np.exp(np.interp(0.0, ahead, np.log(phi[last : last + 2])))
+        return _crossing(phi[last : last + 2], ahead, 0.0)
 
     return of_clusters(table.sizes["seed_number"], crossing)
 

@@ -96,7 +96,7 @@ def stretch(
     ----------
     Tatsuuma, Kataoka & Tanaka (2019), ApJ 874, 159, as recalled. Whether they pull one axis or three is not known here.
     """
-    if not isinstance(axes, str) or axes not in AXES:
+    if axes not in tuple(AXES):
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
     if not (isinstance(compressed, Grain) or isinstance(compressed, xr.Dataset) and "state_monomer" in compressed):
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")

@@ -6,7 +6,7 @@ import xarray as xr
 from ratd.base.statistics import mean_of
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.compression.figures.common import COLOURS
-from ratd.experiments.compression.pulls import in_units, main_pulls, nominal_phi
+from ratd.experiments.compression.tension_findings import in_units, main_pulls, nominal_phi
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 from ratd.pipeline import io
 

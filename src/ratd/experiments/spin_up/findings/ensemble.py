@@ -151,8 +151,9 @@ def table_3_by_mark(table):
     for mark, short in MARKS.items():
         if mark != "omega_disr":
             found = of_table_3("d", fit_ensemble(table, PAPER_MEAN_RADIUS, mark=mark))
-            own = {name: value for name, value in found.items() if name.endswith((" A", " alpha"))}
-            values |= {f"{name} {short}": value for name, value in own.items() if name.startswith("d.table3 ")}
+            for material, kind in TABLE_3:
+                start = f"d.table3 {material} {kind}"
+                values |= {f"{start} {number} {short}": found[f"{start} {number}"] for number in ("A", "alpha")}
             most.append(found["d.alpha most"])
             held.append(found["d.table3 held"])
     sign = "negative" if max(most) < 0.0 else "not always negative"

@@ -1,12 +1,10 @@
 """What pulled clusters say of the tensile strength, and grains that were spun up beside them."""
 
-import math
-
 import numpy as np
 
 from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured
+from ratd.base.measured import Measured, quotient
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.strength import measured, of_means
 
@@ -63,11 +61,11 @@ def of_tension(entries):
         ways[f"rate_{other:.0e}"] = one_axis & ~unloaded & (rates == other) & (numbers == n)
     for other in np.unique(numbers[numbers != n]):
         ways[f"N_{other}"] = one_axis & ~unloaded & (rates == rate) & (numbers == other)
+    peak = entries["phi_strength"].values / entries["phi"].values
     found = {"tension_x.rate": rate, "tension_x.N": n}
     for way, own in ways.items():
         for each in np.unique(phi[own]):
             here = own & (phi == each)
-            peak = entries["phi_strength"].values / entries["phi"].values
             pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
             found |= {
                 f"tension_{way}.{each:g}": Measured(*mean_of((strength / formula)[here])),
@@ -75,7 +73,6 @@ def of_tension(entries):
                 f"tension_{way}.n_{each:g}": int(here.sum()),
                 f"tension_{way}.held_{each:g}": int((strength[here] > 0.0).sum()),
                 f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
-                f"tension_{way}.start_{each:g}": Measured(*mean_of(entries["phi"].values[here])),
             }
             beside = main & (phi == each)
             if way not in ("x", "xyz") and beside.any():
@@ -94,8 +91,7 @@ def _over(values, seed, own, other, same):
         common = np.intersect1d(seed[own], seed[other])
         pairs = np.array([[values[each & (seed == one)][0] for each in (own, other)] for one in common])
         return measured(of_means(pairs, lambda mean: mean[0] / mean[1]))
-    (one, one_error), (two, two_error) = mean_of(values[own]), mean_of(values[other])
-    return Measured(one / two, abs(one / two) * math.hypot(one_error / one, two_error / two))
+    return quotient(mean_of(values[own]), mean_of(values[other]))
 
 
 def _slope(x, y, seed):
