@@ -35,7 +35,7 @@ def test_every_variable_has_a_meaning_and_si_units():
     for kind, name in EVERY_VARIABLE:
         variable = kinds.kind_of(kind).variables[name]
         assert variable.long_name, (kind, name)
-        assert variable.dtype in ("f8", "i8", "i4", "i1", "str"), (kind, name)
+        assert variable.dtype in ("f8", "i8", "u8", "i4", "i1", "str"), (kind, name)
         is_number = variable.dtype != "str" and not variable.flags
         assert (variable.units in SI) if is_number else (variable.units == ""), (kind, name)
 

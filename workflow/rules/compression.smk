@@ -107,10 +107,34 @@ rule compression_snapshots:
         "../scripts/analyse.py"
 
 
+rule press:
+    input:
+        compression.CLUSTER,
+    output:
+        pressed=compression.PRESSED,
+    log:
+        "<results>/logs/pressed/{set}/phi_{phi}_seed_{seed}.log",
+    benchmark:
+        "<results>/benchmarks/pressed/{set}/phi_{phi}_seed_{seed}.tsv"
+    wildcard_constraints:
+        **COMPRESSION_NAMES,
+    conda:
+        "../envs/ratd.yaml"
+    resources:
+        runtime=1440,
+    params:
+        task=task("run", "ratd.experiments.compression.pull:press", "pressed"),
+        settings=lambda w: COMPRESSION.press(w.set),
+    message:
+        "Compress cluster {wildcards.seed} of the set {wildcards.set} to phi = {wildcards.phi}"
+    script:
+        "../scripts/run.py"
+
+
 rule stretch:
     input:
-        lambda w: compression.CLUSTER.format(
-            set=COMPRESSION.config["pulls"][w.pull]["set"], seed=w.seed
+        lambda w: compression.PRESSED.format(
+            set=COMPRESSION.config["pulls"][w.pull]["set"], phi=w.phi, seed=w.seed
         ),
     output:
         tension_set=compression.PULL,

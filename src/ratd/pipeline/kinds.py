@@ -32,7 +32,7 @@ HOMES = {
     ),
     **dict.fromkeys(("clusters", "compression"), "ratd.experiments.compression.files"),
     **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
-    "tension_set": "ratd.experiments.compression.pull",
+    **dict.fromkeys(("pressed", "tension_set"), "ratd.experiments.compression.pull"),
     **dict.fromkeys(("table1", "table2"), "ratd.experiments.spin_up.composition"),
     "parameters": "ratd.experiments.spin_up.parameters",
     "calibration": "ratd.experiments.spin_up.calibration",
@@ -82,7 +82,7 @@ class Variable:
     dims : tuple of str
         Dimensions in the file.
     dtype : str
-        ``"f8"``, ``"i8"``, ``"i4"``, ``"i1"`` or ``"str"`` (text, UTF-8, in a file an array of characters).
+        ``"f8"``, ``"i8"``, ``"u8"``, ``"i4"``, ``"i1"`` or ``"str"`` (text, UTF-8, in a file an array of characters).
     units : str
         In the notation of UDUNITS, ``"1"`` for pure numbers, ``""`` for text and flags.
     long_name : str

@@ -6,10 +6,11 @@ import pytest
 import ratd
 from ratd.aggregates.strength import rolling_pressure
 from ratd.experiments import intervals
-from ratd.experiments.compression.pull import pulled
+from ratd.experiments.compression.pull import pressed, pulled
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, static_from, time_unit
 from ratd.experiments.compression.strain import strain_dataset
+from ratd.pipeline import io
 
 HOW = {"strain_rate": 3e-5, "until_phi": 0.25}
 
@@ -255,27 +256,26 @@ def test_a_killed_pull_goes_on_with_the_same_bits(run, tmp_path, monkeypatch, un
     assert again.equals(whole) and again.attrs == whole.attrs
 
 
-def test_the_pipeline_keeps_what_a_killed_pull_has_done(cluster, tmp_path, monkeypatch):
-    settings = {
-        "strain_rate": 3e-5, "k_n": 0.01, "scheme": "homogeneous", "timestep_factor": 0.14, "long_steps": None,
-        "pull": {"strain_rate": 3e-5, "axes": "x", "unload": False},
-    }  # fmt: skip
+def test_a_pull_goes_on_from_the_file_of_a_compression_and_after_a_kill_with_the_same_bits(run, tmp_path, monkeypatch):
+    settings = {"k_n": 0.01, "timestep_factor": 0.14, "pull": {"strain_rate": 3e-5, "axes": "x", "unload": False}}
+    whole = pulled(run, settings)
+    io.write(tmp_path / "pressed.nc", pressed(run), "pressed")
+    kept = io.read(tmp_path / "pressed.nc", "pressed")
     monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     monkeypatch.setattr(intervals, "PROGRESS", 0.0)
-    whole = pulled(cluster, settings, 0.1)
-    path = tmp_path / "checkpoint"
-    told = []
+    seen = []
 
-    def kill(tell):
-        told.append(tell())
-        if path.with_name("checkpoint.pull").exists():
+    def kill(phi, *_):
+        seen.append(phi)
+        if len(seen) == 30:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        pulled(cluster, settings, 0.1, say=kill, checkpoint=path)
-    first, told = len(told), []
-    assert pulled(cluster, settings, 0.1, say=lambda tell: told.append(tell()), checkpoint=path).equals(whole)
-    assert 0 < len(told) < first
+        pulled(kept, settings, progress=kill, checkpoint=tmp_path / "checkpoint")
+    went_on = []
+    how = {"progress": lambda phi, *_: went_on.append(phi), "checkpoint": tmp_path / "checkpoint"}
+    assert pulled(kept, settings, **how).equals(whole)
+    assert went_on[0] < seen[-2]
 
 
 def test_an_aggregate_that_fills_a_box_is_pulled_as_the_compression_is(run):

@@ -34,6 +34,7 @@ CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
 RUN = "<results>/compression/{set}/seed_{seed}.nc"
 TABLE = "<results>/compression/{set}.nc"
 SNAPSHOTS = "<results>/compression/snapshots.nc"
+PRESSED = "<results>/pressed/{set}/phi_{phi}_seed_{seed}.nc"
 PULL = "<results>/tension/{pull}/phi_{phi}_seed_{seed}.nc"
 
 
@@ -181,10 +182,16 @@ class Plan:
         own = self.of_set(name)
         return own["n"] / (own["strain_rate"] * own["timestep_factor"])
 
+    def press(self, name):
+        """Settings of the compression of clusters of a set that are pulled then; the job knows the filling factor."""
+        return {key: value for key, value in self.compress(name).items() if key not in ("until_phi", "snapshots")}
+
     def stretch(self, pull):
-        """Settings of a pull, with those of the compression before it."""
+        """Settings of a pull, with what it shares with the compression before it."""
         own = self.config["pulls"][pull]
-        return self.compress(own["set"]) | {"pull": {key: own[key] for key in ("strain_rate", "axes", "unload")}}
+        before = self.compress(own["set"])
+        shared = {key: before[key] for key in ("k_n", "timestep_factor")}
+        return shared | {"pull": {key: own[key] for key in ("strain_rate", "axes", "unload")}}
 
     def files(self, path, name):
         """Files of all seeds of a set."""

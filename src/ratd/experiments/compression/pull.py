@@ -1,17 +1,49 @@
-"""Clusters that are compressed and pulled: the stage `stretch` of the pipeline."""
+"""Clusters that are compressed and pulled: the stages `press` and `stretch` of the pipeline."""
 
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from ratd.experiments.compression.files import read_cluster
+from ratd.base.materials import Material
+from ratd.engine.state import State
+from ratd.experiments.compression.files import REFERENCE, read_cluster
 from ratd.experiments.compression.squeeze import law_of, squeezed, told
 from ratd.experiments.compression.stretch import stretch
-from ratd.pipeline.kinds import Kind, over, register
+from ratd.pipeline import io
+from ratd.pipeline.kinds import Kind, Variable, kind_of, over, register
 
-__all__ = ["pulled", "run"]
+__all__ = ["press", "pressed", "pulled", "run"]
 
+CONSTANTS = tuple(field.name for field in fields(Material) if field.name != "name")
+TWO_AXES, WHOLE, UNSIGNED = ("lost", "material"), ("identity", "fragment", "kind", "counter"), ("pair_i", "pair_j")
+
+
+def _state_variables():
+    """Arrays of a state, as `ratd.experiments.compression.strain.strain_dataset` names them."""
+    found = {}
+    for name in State._fields:
+        dims = tuple(f"{name}_{axis}" for axis in range(1 + (name in TWO_AXES)))
+        dtype = "i8" if name in WHOLE else "u8" if name in UNSIGNED else "f8"
+        meaning = f"{name} of the state, numbers in SI units as ratd.engine.state.State lays them out"
+        found[f"state_{name}"] = Variable(dims, dtype, "1", meaning, nan=dtype == "f8")
+    return found
+
+
+register(
+    "pressed",
+    Kind(
+        "A cluster compressed to one filling factor, as it is then: the state of the engine",
+        {
+            **over(("record",), {"phi": ("1", "filling factor")}),
+            **over(("record", "axis"), {"box_length": ("m", "edges of the box")}),
+            **_state_variables(),
+        },
+        attributes=("material", *CONSTANTS, "law", "monomer_radius", "time_unit", "seed", "n_monomers"),
+        references=REFERENCE,
+    ),
+)
 register(
     "tension_set",
     Kind(
@@ -45,36 +77,56 @@ register(
 )
 
 
-def pulled(grain, settings, phi, *, say=None, checkpoint=None):
+def press(job):
+    """Compress one cluster to the filling factor of the job, and keep the state.
+
+    Parameters
+    ----------
+    job : ratd.pipeline.jobs.Job
+    """
+    grain = read_cluster(job.input[0])
+    settings = job.settings | {"until_phi": float(job.wildcards.phi), "snapshots": []}
+    checkpoint = Path(f"{job.output[0]}.checkpoint")
+    compressed = squeezed(grain, settings, checkpoint=checkpoint, progress=told(job.progress(f"seed {grain.seed}")))
+    job.write("pressed", pressed(compressed))
+    checkpoint.unlink(missing_ok=True)
+
+
+def pressed(compressed):
+    """What a pull needs of a compression, of the kind ``pressed``.
+
+    Parameters
+    ----------
+    compressed : xarray.Dataset
+        From `ratd.compress`.
+    """
+    layout = kind_of("pressed")
+    last = compressed[list(layout.variables)].isel(record=[-1]).drop_vars("axis")
+    return xr.Dataset(last.variables, attrs={name: compressed.attrs[name] for name in layout.attributes})
+
+
+def pulled(compressed, settings, *, progress=None, checkpoint=None):
     """One entry of the kind ``tension_set``.
 
     Parameters
     ----------
-    grain : Grain
+    compressed : xarray.Dataset
+        From `ratd.compress`, or of the kind ``pressed``.
     settings : dict
-        Those of the compression, and under ``pull`` strain_rate, axes and unload.
-    phi : float
-        Filling factor at which the compression ends and the pulling begins.
-    say : callable, optional
-        From `ratd.pipeline.jobs.Job.progress`.
-    checkpoint : path-like, optional
-        Where the compression keeps what it needs to go on after a kill; the pull does beside it, in a file of which the
-        name ends with ``.pull``.
+        k_n and timestep_factor, and under ``pull`` strain_rate, axes and unload.
+    progress, checkpoint
+        As of `ratd.stretch`.
     """
-    progress = None if say is None else told(say)
-    compressed = squeezed(
-        grain, settings | {"until_phi": phi, "snapshots": []}, checkpoint=checkpoint, progress=progress
-    )
     own = settings["pull"]
+    how = {"law": law_of(settings), "timestep_factor": settings["timestep_factor"]}
     run = stretch(
         compressed,
         own["strain_rate"],
         axes=own["axes"],
         unload=own["unload"],
-        law=law_of(settings),
-        timestep_factor=settings["timestep_factor"],
-        checkpoint=None if checkpoint is None else f"{checkpoint}.pull",
+        checkpoint=checkpoint,
         progress=progress,
+        **how,
     )
     entry = {
         "phi_compressed": compressed["phi"].values[-1],
@@ -83,27 +135,25 @@ def pulled(grain, settings, phi, *, say=None, checkpoint=None):
         "strength": run.attrs["tensile_strength"],
         "phi_strength": run.attrs["phi_strength"],
         "residual": run.attrs["residual_pressure"],
-        "surface_energy": grain.material.surface_energy,
+        "surface_energy": compressed.attrs["surface_energy"],
         "monomer_radius": run.attrs["monomer_radius"],
-        "seed": grain.seed,
+        "seed": run.attrs["seed"],
         "n_axes": len(own["axes"]),
-        "n_monomers": grain.n_monomers,
+        "n_monomers": run.attrs["n_monomers"],
         "unloaded": int(own["unload"]),
     }
     return xr.Dataset({name: ("entry", np.array([value])) for name, value in entry.items()})
 
 
 def run(job):
-    """Compress one cluster to a filling factor and pull it.
+    """Pull one cluster that was compressed to a filling factor.
 
     Parameters
     ----------
     job : ratd.pipeline.jobs.Job
     """
-    grain = read_cluster(job.input[0])
+    compressed = io.read(job.input[0], "pressed")
     checkpoint = Path(f"{job.output[0]}.checkpoint")
-    say = job.progress(f"seed {grain.seed}")
-    entry = pulled(grain, job.settings, float(job.wildcards.phi), say=say, checkpoint=checkpoint)
-    job.write("tension_set", entry)
-    for path in (checkpoint, Path(f"{checkpoint}.pull")):
-        path.unlink(missing_ok=True)
+    progress = told(job.progress(f"seed {compressed.attrs['seed']}"))
+    job.write("tension_set", pulled(compressed, job.settings, progress=progress, checkpoint=checkpoint))
+    checkpoint.unlink(missing_ok=True)
