@@ -37,6 +37,12 @@ def seeds_text(table):
     return f"{n} cluster{'s' if n > 1 else ''} of {table['n_monomers'].item()}"
 
 
+def runs_text(table):
+    """How many runs a table has, such as ``10 runs``."""
+    n = table.sizes["seed_number"]
+    return f"{n} run{'s' if n > 1 else ''}"
+
+
 def strain_text(table):
     """Strain rate of a table in mathtext."""
     return rf"$C_\mathrm{{v}} = {power(table['strain_rate'].values[0])}$"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.experiments.compression.figures.common import (
-    COLOURS, DASHES, damping_of, draw_curves, draw_line, finish, read_sets, strain_text, two_panels,
+    COLOURS, DASHES, damping_of, draw_curves, draw_line, finish, read_sets, runs_text, strain_text, two_panels,
 )  # fmt: skip
 from ratd.experiments.compression.strength import of_means, of_same_clusters
 from ratd.experiments.compression.tables import bins
@@ -18,7 +18,7 @@ def figure7(tables):
     """
     tables = of_same_clusters(tables)
     middle = len(tables) // 2
-    labels = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}, {table.sizes['seed_number']} runs" for table in tables]
+    labels = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}, {runs_text(table)}" for table in tables]
     title = f"{tables[0].attrs['material']}, N = {tables[0]['n_monomers'].item()}, {strain_text(tables[0])}"
     figure, above, below = two_panels(title)
     draw_curves(above, None, tables, labels)

@@ -7,6 +7,7 @@ from ratd.experiments.compression.figures.common import (
     draw_line,
     finish,
     read_sets,
+    runs_text,
     strain_text,
     two_panels,
 )
@@ -22,7 +23,7 @@ def figure9(tables):
     figure, above, below = two_panels(title)
     labels = [
         rf"$\xi_\mathrm{{c}}$ = {table['critical_rolling_displacement'].item() / NM:g} nm, "
-        f"{table.sizes['seed_number']} runs"
+        f"{runs_text(table)}"
         for table in tables
     ]
     draw_curves(above, below, tables, labels)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL, read_sets
+from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL, read_sets, runs_text
 from ratd.experiments.compression.strength import anisotropy, mean_pressure
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
@@ -13,7 +13,7 @@ def isotropy(tables):
     figure = new_figure(ONE_COLUMN, 0.8 * ONE_COLUMN, "spread of the pressure over the axes")
     axes = figure.subplots()
     for k, table in enumerate(tables):
-        label = f"{table.attrs['material']}, N = {table['n_monomers'].item()}, {table.sizes['seed_number']} runs"
+        label = f"{table.attrs['material']}, N = {table['n_monomers'].item()}, {runs_text(table)}"
         mean, error = mean_pressure(table)
         known = np.where(mean > 3.0 * error, anisotropy(table), np.nan)
         axes.plot(table["phi"], known, color=COLOURS[k % 5], ls=DASHES[k % 5], label=label)
