@@ -74,6 +74,26 @@ def test_a_cluster_is_compressed_from_its_file(tmp_path):
     assert again.exit_code == 0 and said[0] in again.stdout
 
 
+def test_a_cluster_is_pulled_apart_from_its_file(tmp_path):
+    cluster = tmp_path / "cluster.xyz"
+    grain = ratd.grow_bcca(32, material="ice", seed=1)
+    write_particles(grain, cluster)
+    done = run("stretch", cluster, "--material", "ice", "--strain-rate", "1e-4", "--phi", "0.2", "--starts", "2")
+    assert done.exit_code == 0, done.output
+    target = cluster.with_name("cluster_stretched.nc")
+    first = rows(io.read(target, "stretched"), "stretched")[0]
+    unmoved = ratd.read_particles(cluster, unit="nm").grain("ice")
+    beside = ratd.stretch(ratd.compress(unmoved, 1e-4, 0.2, snapshots=()), 1e-4)
+    assert first["tension"].values == pytest.approx(beside["tension"].values)
+    strength = io.read(target, "stretched")["tensile_strength"].values
+    said = re.search(r"tensile strength = (\S+) ± (\S+) Pa: (\S+) of 0.951", done.stdout)
+    assert float(said[1]) == pytest.approx(strength.mean(), rel=1e-3)
+    assert float(said[3]) == pytest.approx(strength.mean() / (0.951 * 0.1 / 1e-7 * 0.2**1.8), rel=0.01)
+    assert cluster.with_name("cluster_stretched.png").read_bytes()[1:4] == b"PNG"
+    again = run("show", target, "--out", cluster.with_name("again"))
+    assert again.exit_code == 0 and said[0] in again.stdout
+
+
 def test_two_clusters_collide_from_their_files(tmp_path):
     one, other = tmp_path / "one.xyz", tmp_path / "other.xyz"
     for path, number in ((one, 12), (other, 8)):

@@ -2,6 +2,7 @@
 
     python -m ratd spin-up grain.xyz --material q-S
     python -m ratd compress cluster.xyz --material ice
+    python -m ratd stretch cluster.xyz --material ice
     python -m ratd collide cluster.xyz --material silica --velocity 10
     python -m ratd show grain.xyz
 
@@ -22,6 +23,7 @@ __all__ = ["main"]
 COMMANDS = {
     "spin-up": "ratd.experiments.spin_up.command",
     "compress": "ratd.experiments.compression.command",
+    "stretch": "ratd.experiments.compression.stretch_command",
     "collide": "ratd.experiments.collision.command",
     "show": "ratd.command.show",
 }
@@ -30,6 +32,7 @@ COMMANDS = {
 SHOWN = {
     "spinup": "ratd.experiments.spin_up.command",
     "compression": "ratd.experiments.compression.command",
+    "stretched": "ratd.experiments.compression.stretch_command",
     "collisions": "ratd.experiments.collision.command",
     "grains": "ratd.command.show",
 }

@@ -30,7 +30,7 @@ HOMES = {
     **dict.fromkeys(
         ("spinup", "disruption", "table", "cells", "fit", "fragments", "spun_up"), "ratd.experiments.spin_up.files"
     ),
-    **dict.fromkeys(("clusters", "compression"), "ratd.experiments.compression.files"),
+    **dict.fromkeys(("clusters", "compression", "stretched"), "ratd.experiments.compression.files"),
     **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
     **dict.fromkeys(("pressed", "tension_set"), "ratd.experiments.compression.pull"),
     **dict.fromkeys(("table1", "table2"), "ratd.experiments.spin_up.composition"),

@@ -13,7 +13,7 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["MONOMER", "REFERENCE", "RUN", "cluster_row", "read_cluster", "read_run", "run_row", "runs"]
+__all__ = ["MONOMER", "REFERENCE", "RUN", "cluster_row", "read_cluster", "read_run", "run_row", "runs", "stretched_row"]
 
 REFERENCE = "Kataoka et al. (2013), A&A 554, A4"
 MONOMER = {
@@ -31,6 +31,13 @@ RUN = {
     "phi_start": ("1", "filling factor at the start"),
     "static_from": ("1", "filling factor from which on the compression is static"),
     "radius_of_gyration": ("m", "radius of gyration of the cluster"),
+}
+PULL = {
+    **{name: RUN[name] for name in ("monomer_radius", "time_unit", "strain_rate")},
+    "phi_start": ("1", "filling factor at which the pulling began"),
+    "tensile_strength": ("Pa", "greatest tension"),
+    "phi_strength": ("1", "filling factor there"),
+    "residual_pressure": ("Pa", "pressure left at rest before the pulling"),
 }
 register(
     "clusters",
@@ -87,6 +94,24 @@ register(
         references=REFERENCE,
     ),
 )
+register(
+    "stretched",
+    Kind(
+        "Aggregates compressed to a filling factor and pulled until they come apart",
+        {
+            **MATERIAL,
+            "seed": Variable((ROW,), "i8", "1", "seed of the cluster"),
+            **row_sizes(("record",)),
+            **over((ROW,), {"n_monomers": ("1", "number of monomers"), "steps": ("1", "number of steps")}, dtype="i8"),
+            **over((ROW,), PULL),
+            **_record_variables(),
+            **over(("record",), {"tension": ("Pa", "tension along the pulled axes")}),
+        },
+        attributes=("material", "law", "integrator", "axes"),
+        ragged=("record",),
+        of_row=("seed", "n_monomers", "steps", *PULL),
+    ),
+)
 
 
 def cluster_row(grain):
@@ -122,6 +147,21 @@ def run_row(run):
         row[name] = run[name].drop_vars([dim for dim in run[name].dims if dim in LABELS])
     position = run["snapshot_position"]
     row["snapshot_position"] = (("snapshot_monomer", "axis"), position.values.reshape(-1, 3), position.attrs)
+    return row
+
+
+def stretched_row(run):
+    """Row of a pull in a file, without the state at its end.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        From `ratd.stretch`.
+    """
+    names = {"seed", "n_monomers", "steps", *PULL, "law", "integrator", "axes", "material"}
+    row = xr.Dataset(attrs=_kept(run.attrs, names))
+    for name in (*RECORDS, "tension"):
+        row[name] = run[name].drop_vars([dim for dim in run[name].dims if dim in LABELS])
     return row
 
 
