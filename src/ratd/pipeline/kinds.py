@@ -58,6 +58,7 @@ HOMES = {
             "theory",
             "compression",
             "box_at_rest",
+            "dense",
             "growth",
             "relaxation",
             "energy",

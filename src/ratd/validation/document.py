@@ -27,7 +27,7 @@ TEMPLATE = Path("docs/templates/validation.md")
 DOCUMENT = Path("docs/validation.md")
 CHECKS = (
     "pull_off", "lammps", "forces", "frames", "energy_step", "energy", "relaxation", "growth", "theory", "damping",
-    "literal", "compression", "box_at_rest",
+    "literal", "compression", "dense", "box_at_rest",
 )  # fmt: skip
 """One file each, with a row a case."""
 MADE = ("settings_hash", "code_hash", "versions")

