@@ -74,9 +74,9 @@ def of_dense(table):
     -------
     dict
         ``dense.WHAT_PAIR_LOW`` as of `of_lammps`, for the bins between `DENSE_EDGES` and the pairs of `PAIRS`;
-        ``dense.twisting`` and ``dense.twisting_limits``, the part of the work that twisting takes up to the end in ratd,
-        with its own limits and with those of LAMMPS; ``dense.twisting_matters``, the mean pressure in the last bin over
-        that without twisting, in ratd; ``dense.n``, ``dense.N`` and ``dense.rate``.
+        ``dense.twisting`` and ``dense.twisting_limits``, the part of the work that twisting takes in ratd up to the
+        end, with its own limits and with those of LAMMPS; ``dense.twisting_matters``, the mean pressure in the last bin
+        over that without twisting, in ratd; ``dense.n``, ``dense.N`` and ``dense.rate``.
     """
     found = {"dense.n": table["seed"].nunique(), "dense.N": int(table["n_monomers"].iloc[0])}
     found["dense.rate"] = float(table["strain_rate"].iloc[0])
