@@ -10,6 +10,7 @@ from scipy.stats import kstest
 from ratd.base.measured import median
 from ratd.base.statistics import median_of
 from ratd.experiments.compression.beside_lammps import EDGES, of_box, of_lammps
+from ratd.experiments.compression.beside_lammps import of_dense as dense_over
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -26,6 +27,7 @@ __all__ = [
     "of_box_at_rest",
     "of_compression",
     "of_damping",
+    "of_dense",
     "of_energy",
     "of_energy_step",
     "of_forces",
@@ -57,6 +59,8 @@ CONTACTS = 0.02
 """What the number of contacts in LAMMPS may differ by in a compression, in the mean of its clusters."""
 PRESSED = 0.03
 """... and the mean pressure up to phi = 0.03, where no limit of LAMMPS follows the load yet."""
+ALIKE = 0.05
+"""... and from 0.1 to 0.15, in the same dense clusters without twisting, or with the limits of LAMMPS in ratd."""
 CLOSED = {"compression": 5e-3, "long steps": 5e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
 SHIFTED = 0.01
@@ -73,7 +77,7 @@ def limits():
     found = {
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
-        "contacts": CONTACTS, "pressed": PRESSED,
+        "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
@@ -225,6 +229,13 @@ def of_compression(table):
     within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in EDGES[:-1])
     alike = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < PRESSED for low in EDGES[:2])
     return found | {"compression.verdict": _verdict(within), "compression.pressure verdict": _verdict(alike)}
+
+
+def of_dense(table):
+    """Dense clusters beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_dense`."""
+    found = dense_over(table)
+    within = all(abs(found[f"dense.pressure_{pair}_0.1"].value - 1.0) < ALIKE for pair in ("untwisted", "limits"))
+    return found | {"dense.verdict": _verdict(within)}
 
 
 def of_box_at_rest(table):

@@ -32,6 +32,8 @@ DIFFERENCES = (
     "A contact ends at the greatest pull, delta = -0.397 delta_0; in ratd at the end of the branch, -0.8255 delta_0.",
     "The limits of sliding, rolling and twisting are Coulomb-like: a constant times |F_N + 2 F_C|. They are those of "
     "ratd at equilibrium (F_N = 0), half of them at the greatest pull, and grow with compression.",
+    "A twisting torque beyond its limit takes the sign of the rate of twisting, in ratd it keeps its own "
+    "(`ratd.laws.jkr_as_in_lammps`): where the limit falls as the contact vibrates, the torque may be turned round.",
     "Sliding and rolling displacements are integrated velocities. They tilt with the line of the centres, but do not "
     "turn with a pair that spins about that line (its manual says so): in a grain that rotates, a contact parallel to "
     "the axis slowly loses the load that its springs carry. In a turning frame nothing turns, and the effect is gone. "

@@ -101,7 +101,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
         Pulled clusters.
     grains : dict or None
         See `ratd.experiments.compression.tension_findings.spun_up`.
-    lammps, box : pandas.DataFrame or None
+    lammps, box, dense : pandas.DataFrame or None
         See `ratd.experiments.compression.beside_lammps`.
     """
     data = Path(data)
@@ -112,7 +112,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
     beside = []
-    for name in ("compression", "box_at_rest"):
+    for name in ("compression", "box_at_rest", "dense"):
         path = Path(peer, f"{name}.nc")
         beside.append(io.read(path, f"validation_{name}").to_dataframe() if path.is_file() else None)
     return sets, entries, grains, *beside

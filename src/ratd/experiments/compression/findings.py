@@ -16,7 +16,7 @@ from ratd.aggregates.strength import (
 from ratd.base.materials import get_material
 from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
-from ratd.experiments.compression.beside_lammps import of_box, of_lammps
+from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.tension_findings import of_tension
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
@@ -359,7 +359,7 @@ def of_balances(sets, values):
     return found | {"earlier.sets": ", ".join(f"`{name}`" for name in earlier)} if earlier else found
 
 
-def findings(sets, entries, spun, lammps=None, box=None):
+def findings(sets, entries, spun, lammps=None, box=None, dense=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -374,6 +374,8 @@ def findings(sets, entries, spun, lammps=None, box=None):
         See `ratd.experiments.compression.beside_lammps.of_lammps`.
     box : pandas.DataFrame, optional
         See `ratd.experiments.compression.beside_lammps.of_box`.
+    dense : pandas.DataFrame, optional
+        See `ratd.experiments.compression.beside_lammps.of_dense`.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
@@ -401,6 +403,8 @@ def findings(sets, entries, spun, lammps=None, box=None):
         values |= of_lammps(lammps)
     if box is not None:
         values |= of_box(box)
+    if dense is not None:
+        values |= of_dense(dense)
     if spun is not None:
         over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
         for kind in np.unique(spun["type"]):
