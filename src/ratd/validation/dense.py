@@ -37,7 +37,7 @@ LAWS = {
     "ratd with the limits of LAMMPS": jkr_as_in_lammps(),
 }
 MARGIN = 8.0
-"""That of the lists of neighbours in LAMMPS, see `ratd.validation.lammps_box`: dense clusters move less than loose ones."""
+"""That of the lists of neighbours in LAMMPS, see `ratd.validation.lammps_box`; dense clusters move less."""
 
 
 def compute(settings, progress=None):

@@ -329,6 +329,12 @@ def verdicts(values, sets):
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
+    if {"slow_65536.ratio_0.005", "slow_16384.ratio_0.005"} <= set(values):
+        alike = [
+            abs(values[f"slow_65536.ratio_{phi:g}"].value - own.value) < 2.0 * own.error
+            for phi, own in ((phi, values[f"slow_16384.ratio_{phi:g}"]) for phi in (0.005, 0.01))
+        ]
+        found["slow_size"] = "not the reason" if all(alike) else "a reason"
     slow = [values[f"rate_{rate}.paired"].value for rate in ("1e-7", "1e-6", "3e-6") if f"rate_{rate}.paired" in values]
     if slow:
         found["rates"] = "a tenth" if max(abs(ratio - 1.0) for ratio in slow) < 0.15 else "more"
