@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import UNITS
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
@@ -21,7 +22,7 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 from ratd.pipeline.partial import Block, Pieces, locked
 
-__all__ = ["aggregate_options", "answer", "moved", "progress_bar", "several"]
+__all__ = ["aggregate_options", "answer", "moved", "progress_bar", "several", "started"]
 
 SHIFT = 1e-12
 """How far the monomers of a start are moved [m], a hundredth of an atom."""
@@ -63,6 +64,22 @@ def moved(position, start):
         return position
     direction = np.random.default_rng(start).normal(size=position.shape)
     return position + SHIFT * direction / np.linalg.norm(direction, axis=1, keepdims=True)
+
+
+def started(particles, material, start):
+    """The aggregate of one of several starts, see `moved`.
+
+    Parameters
+    ----------
+    particles : ratd.Particles
+    material : str
+    start : int
+
+    Returns
+    -------
+    Grain
+    """
+    return Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
 
 
 def several(target, kind, material, provenance, starts, make):

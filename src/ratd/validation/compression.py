@@ -57,9 +57,9 @@ def compute(settings, progress=None):
     # as LAMMPS does it: every step short, and the damping that goes with the contact radius
     how = {"law": jkr(), "timestep_factor": settings["timestep_factor"], "long_steps": None, "snapshots": ()}
     run = compress(cluster, settings["strain_rate"], settings["until_phi"], **how)
-    edges = _edges(run.attrs["phi_start"], settings["until_phi"])
+    edges = bin_edges(run.attrs["phi_start"], settings["until_phi"])
     rows = [
-        _case(settings, "ratd", run.attrs, *numbers)
+        case(settings, "ratd", run.attrs, *numbers)
         for numbers in zip(*_binned(run, edges), [run.attrs["timestep"]] * (len(edges) - 1), strict=True)
     ]
     if progress is not None:
@@ -67,13 +67,13 @@ def compute(settings, progress=None):
     timestep = settings["lammps_step"] * Cluster(cluster).time_unit
     length = run["box_length"].values[0, 0] * (run["phi"].values[0] / run.attrs["phi_start"]) ** (1.0 / 3.0)
     for numbers in in_lammps(cluster, length, settings["strain_rate"], edges, timestep):
-        rows.append(_case(settings, "LAMMPS", run.attrs, *numbers, timestep))
+        rows.append(case(settings, "LAMMPS", run.attrs, *numbers, timestep))
         if progress is not None:
             progress(f"LAMMPS: phi = {numbers[0]:.3g}, P = {numbers[1]:.3g} Pa")
     return rows
 
 
-def _edges(first, last):
+def bin_edges(first, last):
     """Filling factors between the rows, evenly spaced in the logarithm."""
     return np.geomspace(first, last, math.ceil(math.log(last / first) / math.log(STEP)) + 1)
 
@@ -91,7 +91,8 @@ def _binned(run, edges):
     return np.sqrt(edges[1:] * edges[:-1]), pressure, run["n_contacts"].values[at], kinetic[at]
 
 
-def _case(settings, code, about, phi, pressure, n_contacts, kinetic, timestep):
+def case(settings, code, about, phi, pressure, n_contacts, kinetic, timestep):
+    """A row of `COLUMNS`; `about` has the ``rolling_pressure``."""
     line = about["rolling_pressure"] * phi**3
     own = {"code": code, "version": version(), "material": settings["material"], "seed": settings["seed"]}
     own |= {"n_monomers": settings["n"], "strain_rate": settings["strain_rate"], "timestep": timestep}

@@ -21,9 +21,8 @@ from ratd.geometry.box import periodic
 from ratd.laws.jkr_as_in_lammps import jkr_as_in_lammps
 from ratd.laws.jkr_with_springs import jkr
 from ratd.validation.compression import COLUMNS as OF_COMPRESSION
-from ratd.validation.compression import STEP
+from ratd.validation.compression import bin_edges, case
 from ratd.validation.lammps_box import BoxInLammps
-from ratd.validation.peer_lammps import version
 from ratd.validation.tables import table_kind
 
 COLUMNS = OF_COMPRESSION | {
@@ -57,17 +56,15 @@ def compute(settings, progress=None):
     """
     grain, length, first = _pressed(settings)
     about = Cluster(grain)
-    edges = np.geomspace(first, settings["until_phi"], math.ceil(math.log(settings["until_phi"] / first, STEP)) + 1)
-    middle = np.sqrt(edges[1:] * edges[:-1])
+    line = {"rolling_pressure": about.rolling_pressure}
+    edges = bin_edges(first, settings["until_phi"])
     times = np.log(first / edges[1:]) / (3.0 * box_rate(settings["strain_rate"], about.time_unit))
-    shared = {"version": version(), "material": settings["material"], "seed": settings["seed"]}
-    shared |= {"n_monomers": settings["n"], "strain_rate": settings["strain_rate"]}
     rows = []
     for code in (*LAWS, "LAMMPS", "LAMMPS without twisting"):
-        found = _in_ratd if code in LAWS else _in_lammps
-        for phi, numbers in zip(middle, found(code, grain, length, times, settings), strict=True):
-            line = about.rolling_pressure * phi**3
-            rows.append({"code": code, "phi": phi, "line": line} | shared | numbers)
+        follow = _in_ratd if code in LAWS else _in_lammps
+        found = follow(code, grain, length, times, settings)
+        for phi, (*numbers, twisting) in zip(np.sqrt(edges[1:] * edges[:-1]), found, strict=True):
+            rows.append(case(settings, code, line, phi, *numbers) | {"twisting": twisting})
         if progress is not None:
             progress(f"{code}: P = {rows[-1]['pressure']:.3g} Pa at phi = {rows[-1]['phi']:.3g}")
     return rows
@@ -83,7 +80,7 @@ def _pressed(settings):
 
 
 def _in_ratd(code, grain, length, times, settings):
-    """Numbers of each bin that the codes differ in."""
+    """Pressure, contacts, kinetic energy, time step and what twisting took of the work, of each bin."""
     time_unit = Cluster(grain).time_unit
     integrator, _ = integrators(
         grain.material, grain.radius[0], time_unit, settings["timestep_factor"], None, settings["strain_rate"]
@@ -96,13 +93,8 @@ def _in_ratd(code, grain, length, times, settings):
     kinetic = run["kinetic_translation"] + run["kinetic_spin"]
     twisting = run["dissipated_twisting"] / run["work"]
     for k in range(run.sizes["record"]):
-        yield {
-            "timestep": run.attrs["timestep"],
-            "pressure": run["pressure"].item(k),
-            "n_contacts": run["n_contacts"].item(k),
-            "kinetic": kinetic.item(k),
-            "twisting": twisting.item(k),
-        }
+        numbers = (each.item(k) for each in (run["pressure"], run["n_contacts"], kinetic))
+        yield *numbers, run.attrs["timestep"], twisting.item(k)
 
 
 def _in_lammps(code, grain, length, times, settings):
@@ -116,10 +108,4 @@ def _in_lammps(code, grain, length, times, settings):
             steps = box.whole(time)
             pressure = box.advance(steps - done)
             done = steps
-            yield {
-                "timestep": timestep,
-                "pressure": pressure,
-                "n_contacts": box.contacts(),
-                "kinetic": sum(box.kinetic()),
-                "twisting": math.nan,
-            }
+            yield pressure, box.contacts(), sum(box.kinetic()), timestep, math.nan

@@ -37,12 +37,21 @@ def of_lammps(table):
         `EDGES`, and ``lammps.apart_LOW``, the root mean square of the differences of the pressures of single
         bins over that of the pressures; ``lammps.n``, ``lammps.N`` and ``lammps.rate``.
     """
-    found = {"lammps.n": table["seed"].nunique(), "lammps.N": int(table["n_monomers"].iloc[0])}
-    found["lammps.rate"] = float(table["strain_rate"].iloc[0])
+    found = _clusters("lammps", table)
     for low, high in itertools.pairwise(EDGES):
         for name, value in _over(table, "LAMMPS", "ratd", low, high).items():
             found[f"lammps.{name}_{low:g}"] = value
     return found
+
+
+def _clusters(name, table):
+    """How many clusters, of how many monomers, and how fast, as slots."""
+    first = table.iloc[0]
+    return {
+        f"{name}.n": table["seed"].nunique(),
+        f"{name}.N": int(first["n_monomers"]),
+        f"{name}.rate": float(first["strain_rate"]),
+    }
 
 
 def _over(table, one, other, low, high):
@@ -78,8 +87,7 @@ def of_dense(table):
         end, with its own limits and with those of LAMMPS; ``dense.twisting_matters``, the mean pressure in the last bin
         over that without twisting, in ratd; ``dense.n``, ``dense.N`` and ``dense.rate``.
     """
-    found = {"dense.n": table["seed"].nunique(), "dense.N": int(table["n_monomers"].iloc[0])}
-    found["dense.rate"] = float(table["strain_rate"].iloc[0])
+    found = _clusters("dense", table)
     for (low, high), (pair, codes) in itertools.product(itertools.pairwise(DENSE_EDGES), PAIRS.items()):
         for name, value in _over(table, *codes, low, high).items():
             found[f"dense.{name}_{pair}_{low:g}"] = value

@@ -6,11 +6,10 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import read_particles
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
+from ratd.experiments.command import aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
@@ -54,7 +53,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()
-        grain = Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
+        grain = started(particles, material, start)
         run = compress(
             grain,
             strain_rate,

@@ -17,8 +17,8 @@ from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
 from ratd.experiments.compression.findings import findings
 from ratd.experiments.compression.plan import load
-from ratd.experiments.compression.tension_findings import spun_up
 from ratd.experiments.compression.tables import joined
+from ratd.experiments.compression.tension_findings import spun_up
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text

@@ -18,7 +18,6 @@ from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
-from ratd.experiments.compression.tension_findings import of_tension
 from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
@@ -41,6 +40,7 @@ from ratd.experiments.compression.strength import (
     share_at,
     slope_of_structure,
 )
+from ratd.experiments.compression.tension_findings import of_tension
 
 __all__ = ["findings"]
 

@@ -1,22 +1,19 @@
 """Clusters that are compressed and pulled: the stages `press` and `stretch` of the pipeline."""
 
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from ratd.base.materials import Material
 from ratd.engine.state import State
 from ratd.experiments.compression.files import REFERENCE, read_cluster
 from ratd.experiments.compression.squeeze import law_of, squeezed, told
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline import io
-from ratd.pipeline.kinds import Kind, Variable, kind_of, over, register
+from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
 
 __all__ = ["press", "pressed", "pulled", "run"]
 
-CONSTANTS = tuple(field.name for field in fields(Material) if field.name != "name")
 TWO_AXES, WHOLE, UNSIGNED = ("lost", "material"), ("identity", "fragment", "kind", "counter"), ("pair_i", "pair_j")
 
 
@@ -40,7 +37,7 @@ register(
             **over(("record", "axis"), {"box_length": ("m", "edges of the box")}),
             **_state_variables(),
         },
-        attributes=("material", *CONSTANTS, "law", "monomer_radius", "time_unit", "seed", "n_monomers"),
+        attributes=("material", *MATERIAL, "law", "monomer_radius", "time_unit", "seed", "n_monomers"),
         references=REFERENCE,
     ),
 )

@@ -6,12 +6,11 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import read_particles
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
+from ratd.experiments.command import aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
@@ -52,7 +51,7 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
     particles.grain(material)  # says what is wrong before anything is begun
 
     def make(start, checkpoint, progress):
-        grain = Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
+        grain = started(particles, material, start)
 
         def told(half):
             begun = time.monotonic()

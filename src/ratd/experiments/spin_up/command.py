@@ -5,11 +5,10 @@ from pathlib import Path
 
 import click
 
-from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import read_particles
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, moved, part_done, several
+from ratd.experiments.command import aggregate_options, answer, part_done, several, started
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -51,7 +50,7 @@ def command(file, material, unit, starts, out, epsilon):
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()
-        grain = Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
+        grain = started(particles, material, start)
         return run_row(
             spin_up(
                 grain,
