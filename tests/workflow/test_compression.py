@@ -10,6 +10,7 @@ SMALL = {
     "pulls": {"x": {"set": "base", "phi": [0.15], "strain_rate": 1e-4, "number": 1}},
     "figures": {
         **dict.fromkeys([f"figure{k}" for k in range(3, 14)]),
+        "looser": None,
         "isotropy": None,
         "high_density": None,
         "monomers": None,

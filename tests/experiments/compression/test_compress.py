@@ -4,11 +4,18 @@ import numpy as np
 import pytest
 
 import ratd
-from ratd.aggregates.strength import rolling_pressure
+from ratd.aggregates.strength import rolling_pressure, sound_speed_kataoka2013
 from ratd.experiments import intervals
 from ratd.experiments.compression.pull import pressed, pulled
 from ratd.experiments.compression.run import Cluster
-from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, static_from, time_unit
+from ratd.experiments.compression.static import (
+    box_rate,
+    face_speed,
+    filling_factor_bcca,
+    slower_than_sound_from,
+    static_from,
+    time_unit,
+)
 from ratd.experiments.compression.strain import strain_dataset
 from ratd.pipeline import io
 
@@ -162,6 +169,19 @@ def test_speeds_and_the_filling_factor_of_a_cluster_are_as_printed():
     found = [100.0 * face_speed(rate, 16384, 1e-7, phi) for phi in (1e-3, 1e-2, 1e-1)]
     assert found == pytest.approx([12.7, 5.9, 2.7], rel=0.02)
     assert filling_factor_bcca(16384) == pytest.approx(3e-3, rel=0.25)
+
+
+def test_faces_are_slower_than_sound_from_where_the_paper_says():
+    """3.4e-2 for silicate (Kataoka et al. 2013, text to Fig. 12); and there one speed is that part of the other."""
+    silicate, ice = ratd.MATERIALS["silicate"], ratd.MATERIALS["ice"]
+    P_0 = rolling_pressure(silicate.surface_energy, silicate.critical_rolling_displacement, 6e-7)
+    rate = box_rate(3e-7, time_unit(silicate, 6e-7))
+    assert slower_than_sound_from(rate, 16384, 6e-7, silicate.density, P_0) == pytest.approx(0.034, rel=0.03)
+    P_0 = rolling_pressure(ice.surface_energy, ice.critical_rolling_displacement, 1e-7)
+    rate = box_rate(1e-6, time_unit(ice, 1e-7))
+    phi = slower_than_sound_from(rate, 1024, 1e-7, ice.density, P_0, 0.2)
+    sound = float(sound_speed_kataoka2013(phi, P_0, ice.density))
+    assert face_speed(rate, 1024, 1e-7, phi) == pytest.approx(0.2 * sound)
 
 
 def test_static_is_what_the_specification_says():

@@ -18,7 +18,13 @@ from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
-from ratd.experiments.compression.static import box_rate, face_speed, filling_factor_bcca, time_unit
+from ratd.experiments.compression.static import (
+    box_rate,
+    face_speed,
+    filling_factor_bcca,
+    slower_than_sound_from,
+    time_unit,
+)
 from ratd.experiments.compression.strength import (
     FIT_RANGE,
     NEAR,
@@ -93,6 +99,7 @@ def of_set(name, table):
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
     for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
         found[f"ratio_{phi:g}"] = measured(ratio_at(table, phi))
+        found[f"pressure_{phi:g}"] = found[f"ratio_{phi:g}"].value * found["P0"] * phi**3
         found[f"scatter_{phi:g}"] = measured(scatter_at(table, phi))
         k = _bin_at(table, phi)
         contacts = table["n_contacts"].values[:, k] / found["N"]
@@ -213,14 +220,17 @@ def of_closed_formulae():
     # of the faces of the box, over the speed of sound
     for strain_rate in (1e-7, 3e-7, 3e-8):
         for phi in (0.001, 0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
-            face, sound = _face_and_sound("ice", strain_rate, phi)
-            found[f"mach_{strain_rate:.0e}_{phi:g}"] = face / sound
+            found[f"mach_{strain_rate:.0e}_{phi:g}"] = _mach("ice", strain_rate, phi)
+    for strain_rate in (3e-6, 1e-5):
+        found[f"mach_4096_{strain_rate:.0e}_0.05"] = _mach("ice", strain_rate, 0.05, n=4096)
     for phi in (0.05, 0.1):
-        face, sound = _face_and_sound("silicate", 3e-7, phi)
-        found[f"mach_silicate_{phi:g}"] = face / sound
+        found[f"mach_silicate_{phi:g}"] = _mach("silicate", 3e-7, phi)
     face, sound = _face_and_sound("silicate", 3e-7, 0.01)
-    # v_d goes as phi^(-1/3) and c_s as phi
-    found |= {"v_d_silicate": face, "sound_silicate": sound, "sound_from_silicate": 0.01 * (face / sound) ** 0.75}
+    found |= {"v_d_silicate": face, "sound_silicate": sound}
+    silicate, radius = get_material("silicate"), MONOMER_RADIUS["silicate"]
+    P_0 = rolling_pressure(silicate.surface_energy, silicate.critical_rolling_displacement, radius)
+    rate = box_rate(3e-7, time_unit(silicate, radius))
+    found["sound_from_silicate"] = slower_than_sound_from(rate, PAPER_N, radius, silicate.density, P_0)
     for name in MONOMER_RADIUS:
         found |= {f"of_{name}.{key}": value for key, value in _constants(name).items()}
     return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
@@ -239,12 +249,18 @@ def _constants(name):
     }
 
 
-def _face_and_sound(name, strain_rate, phi):
-    """Speed of a face of the box, with as many monomers as in the paper, and of sound in the cluster [cm/s]."""
+def _face_and_sound(name, strain_rate, phi, n=PAPER_N):
+    """Speed of a face of the box of `n` monomers, and of sound in the cluster [cm/s]."""
     own, radius = get_material(name), MONOMER_RADIUS[name]
     P_0 = rolling_pressure(own.surface_energy, own.critical_rolling_displacement, radius)
-    face = face_speed(box_rate(strain_rate, time_unit(own, radius)), PAPER_N, radius, phi)
+    face = face_speed(box_rate(strain_rate, time_unit(own, radius)), n, radius, phi)
     return 100.0 * face, 100.0 * float(sound_speed_kataoka2013(phi, P_0, own.density))
+
+
+def _mach(name, strain_rate, phi, n=PAPER_N):
+    """Speed of a face of the box over that of sound."""
+    face, sound = _face_and_sound(name, strain_rate, phi, n)
+    return face / sound
 
 
 def of_pairs(sets):
@@ -256,6 +272,7 @@ def of_pairs(sets):
             continue
         ratio, steeper = _several(compared(table, sets[beside]))
         found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
+        found[f"{name}.over_all"] = quotient(*(_several(fit_power_law(each))[2] for each in (table, sets[beside])))
     for name, (beside, low, high) in LOOSE.items():
         if {name, beside} <= set(sets):
             found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]

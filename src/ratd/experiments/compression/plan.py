@@ -22,6 +22,7 @@ TITLES = {
     "figure11": "monomers near a monomer",
     "figure12": "pressure of silicate",
     "figure13": "silicate beside other work",
+    "looser": "loose clusters at some strain rates",
     "isotropy": "pressure along the three axes",
     "high_density": "high filling factors",
     "tension": "tensile strength",

@@ -2,9 +2,19 @@
 
 import math
 
+from ratd.aggregates.strength import sound_speed_kataoka2013
 from ratd.laws.johnson_kendall_roberts import contact_time
 
-__all__ = ["INERTIAL_SHARE", "box_rate", "box_size", "face_speed", "filling_factor_bcca", "static_from", "time_unit"]
+__all__ = [
+    "INERTIAL_SHARE",
+    "box_rate",
+    "box_size",
+    "face_speed",
+    "filling_factor_bcca",
+    "slower_than_sound_from",
+    "static_from",
+    "time_unit",
+]
 
 INERTIAL_SHARE = 0.05
 """Part of P_0 phi^3 that the pressure of the inertia may be where a compression counts as static."""
@@ -87,3 +97,34 @@ def static_from(rate, n, monomer_radius, density, rolling_pressure):
     """
     size = box_size(n, monomer_radius, 1.0)
     return (density * (rate * size) ** 2 / (8.0 * INERTIAL_SHARE * rolling_pressure)) ** 0.375
+
+
+def slower_than_sound_from(rate, n, monomer_radius, density, rolling_pressure, part=1.0):
+    """Filling factor from which on the faces of the box are slower than a part of the speed of sound in the cluster.
+
+    Parameters
+    ----------
+    rate : float
+        H [1/s].
+    n : int
+        Number of monomers.
+    monomer_radius : float
+        r_0 [m].
+    density : float
+        rho_0 [kg m-3] of the solid.
+    rolling_pressure : float
+        P_0 [Pa].
+    part : float
+        Of the speed of sound.
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    The speed of the faces goes as phi^(-1/3) and that of sound as phi (Kataoka et al. 2013, A&A 554, A4, Eqs. 26 and
+    27).
+    """
+    sound = part * float(sound_speed_kataoka2013(1.0, rolling_pressure, density))
+    return (face_speed(rate, n, monomer_radius, 1.0) / sound) ** 0.75

@@ -1,0 +1,74 @@
+"""How slow is slow for loose clusters: their pressure at some strain rates, over P_0 phi^3."""
+
+import numpy as np
+
+from ratd.experiments.compression.figures.common import (
+    COLOURS,
+    DASHES,
+    PHI_LABEL,
+    RATIO_LABEL,
+    read_sets,
+    seeds_text,
+    strain_text,
+)
+from ratd.experiments.compression.static import box_rate, slower_than_sound_from
+from ratd.experiments.compression.strength import mean_pressure
+from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
+
+MACH = 0.2
+"""Speed of the faces of the box over that of sound at which each curve has its mark."""
+SMOOTH = 9
+"""Bins of which a curve is the mean, a quarter in phi."""
+LOOSE = (0.0018, 0.05)
+"""Filling factors that are shown."""
+
+
+@styled
+def looser(tables):
+    """Mean pressures over P_0 phi^3 of loose clusters, with bands of one standard error.
+
+    A mark stands where the faces of the box move at `MACH` times the speed of sound; right of it they are slower.
+    """
+    figure = new_figure(ONE_COLUMN, 0.85 * ONE_COLUMN, f"loose clusters of {tables[0].attrs['material']}")
+    axes = figure.subplots()
+    for k, table in enumerate(tables):
+        phi, (value, error) = _smooth(table)
+        style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
+        axes.plot(phi, value, label=f"{seeds_text(table)}, {strain_text(table)}", **style)
+        axes.fill_between(phi, value - error, value + error, color=COLOURS[k % 5], alpha=0.2, lw=0)
+        mark = _mark(table)
+        if phi[0] < mark < phi[-1]:
+            axes.plot(mark, np.interp(mark, phi, value), "o", color=COLOURS[k % 5], ms=4.5, zorder=3)
+    axes.plot([], [], "o", color="black", ms=4.5, label=f"faces at {MACH:g} times the speed of sound")
+    axes.axhline(1.0, color="black", lw=0.8, label=r"$P_0\phi^3$, printed")
+    axes.set(xscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=LOOSE, ylim=(0.0, 1.75))
+    axes.set_yticks(np.arange(0.0, 1.1, 0.2))
+    logarithmic(axes.xaxis, labelled=(2, 5))
+    axes.legend(loc="upper left")
+    return figure
+
+
+def _smooth(table):
+    """Filling factors, and the mean over seeds of P/(P_0 phi^3) with its error, of `SMOOTH` bins each."""
+    phi = table["phi"].values
+    smooth = table.copy()
+    near = np.lib.stride_tricks.sliding_window_view(table["pressure"].values, SMOOTH, axis=1).mean(axis=-1)
+    middle = phi[SMOOTH // 2 : len(phi) - SMOOTH // 2]
+    smooth = smooth.isel(phi_bin=slice(SMOOTH // 2, len(phi) - SMOOTH // 2))
+    smooth["pressure"] = (table["pressure"].dims, near)
+    line = table["rolling_pressure"].values[0] * middle**3
+    mean, error = (part / line for part in mean_pressure(smooth))
+    there = np.isfinite(mean)
+    return middle[there], (mean[there], np.nan_to_num(error[there]))
+
+
+def _mark(table):
+    """Filling factor from which on the faces of the box move at less than `MACH` times the speed of sound."""
+    rate = box_rate(table["strain_rate"].values[0], table["time_unit"].item())
+    of_ice = (table["monomer_radius"].item(), table["density"].item(), table["rolling_pressure"].values[0])
+    return slower_than_sound_from(rate, table["n_monomers"].item(), *of_ice, MACH)
+
+
+def draw(files, settings):
+    """The figure of a job of the pipeline, from its files and settings."""
+    return looser(read_sets(files))
