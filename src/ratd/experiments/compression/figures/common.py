@@ -5,7 +5,8 @@ import re
 import numpy as np
 
 from ratd.aggregates.strength import compressive_strength_kataoka2013
-from ratd.experiments.compression.strength import mean_pressure
+from ratd.experiments.compression.strength import mean_pressure, of_means
+from ratd.experiments.compression.tables import bins
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure
 from ratd.pipeline import io
 
@@ -99,6 +100,44 @@ def draw_curves(above, below, tables, labels, *, alone=False):
             low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
             shown = static & (mean > 0.0)
             axes.fill_between(phi, np.where(shown, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
+
+
+def draw_over(axes, tables, which, label):
+    """Mean pressures over that of one of the sets, of the same clusters, with bands of one standard error.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    tables : list of xarray.Dataset
+        In the colours and dashes that `draw_curves` gives them.
+    which : int
+        Which of them the others are divided by.
+    label : str
+        Of the axis.
+    """
+    for k, table in enumerate(tables):
+        if k != which:
+            phi, ratio, error = over(table, tables[which])
+            axes.plot(phi, ratio, color=COLOURS[k % 5], ls=DASHES[k % 5])
+            axes.fill_between(phi, ratio - error, ratio + error, color=COLOURS[k % 5], alpha=0.2, lw=0)
+    axes.set(yscale="linear", ylabel=label)
+
+
+def over(table, other):
+    """Mean pressure of a set over that of the same clusters in another, where both are static.
+
+    Returns
+    -------
+    phi, ratio, error : (k,) array
+    """
+    numbers = [bins(each["phi"].values) for each in (table, other)]
+    _, own, others = np.intersect1d(*numbers, return_indices=True)
+    both = np.stack([table["pressure"].values[:, own], other["pressure"].values[:, others]], axis=1)
+    phi = table["phi"].values[own]
+    static = phi > max(each["static_from"].values[0] for each in (table, other))
+    good = np.isfinite(both).all(axis=(0, 1)) & (both.mean(axis=0) > 0.0).all(axis=0) & static
+    fit = of_means(both[:, :, good], lambda mean: mean[0] / mean[1])
+    return phi[good], fit.value, fit.error
 
 
 def finish(figure, above, below=None):

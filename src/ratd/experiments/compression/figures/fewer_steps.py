@@ -2,7 +2,9 @@
 
 import re
 
-from ratd.experiments.compression.figures.common import pressures, read_sets, seeds_text, strain_text
+from ratd.experiments.compression.figures.common import (
+    draw_curves, draw_line, draw_over, finish, read_sets, seeds_text, strain_text, two_panels,
+)  # fmt: skip
 from ratd.pictures.style import styled
 
 
@@ -14,14 +16,21 @@ def longest_step(table):
 
 @styled
 def fewer_steps(tables):
-    """Mean pressures of sets that differ in their steps, and how many these are."""
+    """Mean pressures of sets that differ in their steps, and how many these are; below over those of explicit ones."""
     labels = []
     for table in tables:
         longest = longest_step(table)
         name = "explicit" if longest is None else rf"at most {longest:.0f} $t_0$"
         labels.append(f"{name}, {float(table['steps'].mean()) / 1e3:,.0f} thousand steps")
     about = f"{tables[0].attrs['material']}, {seeds_text(tables[0])}, {strain_text(tables[0])}"
-    return pressures(tables, labels, about)
+    figure, above, below = two_panels(about)
+    draw_curves(above, None, tables, labels)
+    draw_line(above, tables[0])
+    above.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))
+    explicit = next((k for k, table in enumerate(tables) if longest_step(table) is None), 0)
+    draw_over(below, tables, explicit, r"$P\,/\,P$(explicit)")
+    below.set_ylim(0.4, 1.4)
+    return finish(figure, above)
 
 
 def draw(files, settings):

@@ -53,7 +53,7 @@ def tension(entries, spun=None):
     axes.plot(
         x, tensile_strength_tatsuuma2019(1.0, 1.0, x), color="black", lw=0.8, label=r"$0.951\,\phi^{1.8}$ (recalled)"
     )
-    axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$", ylabel=r"$S\,r_0/\gamma$")
+    axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$ at the start", ylabel=r"$S\,r_0/\gamma$")
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
     axes.set_ylim(bottom=2e-5)
