@@ -25,6 +25,7 @@ from ratd.validation import (
     frames,
     growth,
     literal,
+    mark_rules,
     pull_off,
     relaxation,
     theory,
@@ -152,6 +153,19 @@ def test_theory(tmp_path):
     rows = theory.compute(SMALL | {"seeds": 2, "epsilon": 0.2, "timestep_factor": 0.05})
     assert all(0.3 < row["omega_first_loss"] / row["cut_bound"] < 3.0 for row in rows)
     io.write(tmp_path / "a.nc", as_dataset(rows, theory.KIND), theory.KIND)
+
+
+def test_the_mark_is_read_by_every_rule(tmp_path):
+    settings = SMALL | {"seeds": 2, "windows": [1, 9], "majorities": [0.75]}
+    rows = mark_rules.compute(settings)
+    assert [(row["seed"], row["window"], row["majority"]) for row in rows] == [
+        (seed, *rule) for seed in (0, 1) for rule in ((5, 0.5), (1, 0.5), (9, 0.5), (5, 0.75))
+    ]
+    # fewer records belong to the grain where it must hold more of the mass
+    assert all(
+        stricter["omega_disr"] <= usual["omega_disr"] for usual, stricter in zip(rows[::4], rows[3::4], strict=True)
+    )
+    io.write(tmp_path / "a.nc", as_dataset(rows, mark_rules.KIND), mark_rules.KIND)
 
 
 def test_relaxation(tmp_path, monkeypatch):
@@ -418,7 +432,7 @@ def test_plan_names_every_piece_once():
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
-            "forces", "lammps", "relaxation", "compression", "dense", "box_at_rest", "quasi_static", "remnant",
+            "forces", "lammps", "mark_rules", "relaxation", "compression", "dense", "box_at_rest", "quasi_static", "remnant",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and kinds.kind_of(f"validation_{check}")

@@ -56,6 +56,7 @@ HOMES = {
             "damping",
             "literal",
             "theory",
+            "mark_rules",
             "compression",
             "box_at_rest",
             "dense",

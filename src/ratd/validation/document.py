@@ -30,6 +30,8 @@ CHECKS = (
     "literal", "compression", "dense", "box_at_rest",
 )  # fmt: skip
 """One file each, with a row a case."""
+ELSEWHERE = ("mark_rules",)
+"""Checks whose table another page tells of."""
 MADE = ("settings_hash", "code_hash", "versions")
 """What a table keeps of each of its pieces."""
 COMPRESSION = "docs/compression/data/sets/*.nc"
@@ -55,7 +57,7 @@ def collect(results, folder="."):
         If there is no piece.
     """
     folder = Path(folder)
-    found = {check: sorted(Path(results, check).glob("*.nc")) for check in CHECKS}
+    found = {check: sorted(Path(results, check).glob("*.nc")) for check in (*CHECKS, *ELSEWHERE)}
     if not any(found.values()):
         raise FileError(f"{results}: holds no piece of a check; `snakemake --cores 2 {results}/energy.csv` makes some")
     for check, paths in found.items():

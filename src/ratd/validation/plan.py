@@ -77,7 +77,8 @@ class Checks:
             "pull_off": self._pull_off,
             "damping": self._damping,
             "literal": self._literal,
-            "theory": self._theory,
+            "theory": self._each_type_and_size,
+            "mark_rules": self._each_type_and_size,
             "growth": self._growth,
             "relaxation": self._relaxation,
             "energy": self._energy,
@@ -149,8 +150,8 @@ class Checks:
         shared = {key: own[key] for key in ("material", "part_of_limit", "timestep_factor")}
         return _each_grain(own["grains"], shared)
 
-    def _theory(self, own):
-        shared = {"material": own["material"], "seeds": own["seeds"]}
+    def _each_type_and_size(self, own):
+        shared = {key: value for key, value in own.items() if key not in ("types", "sizes_nm")}
         return {
             f"{kind}_{size}nm": shared | {"type": kind, "a_eff": size * NM}
             for kind, size in product(own["types"], own["sizes_nm"])

@@ -37,6 +37,14 @@ def test_running_median_needs_an_odd_window(window):
         running_median([1.0, 2.0], window)
 
 
+@pytest.mark.parametrize(
+    ("rule", "said"), [({"majority": 0}, "above 0"), ({"majority": 1.1}, "at most 1"), ({"window": 2}, "odd")]
+)
+def test_rules_that_are_not_allowed_are_named(rule, said):
+    with pytest.raises(InputError, match=said):
+        disruption(make_run(BREAK), **rule)
+
+
 def test_marks_of_a_gradual_loss():
     mark = disruption(make_run(BREAK, decay=2.0))
     assert float(mark["omega_disr"]) == pytest.approx(BREAK, rel=0.005)
@@ -79,6 +87,19 @@ def test_late_peak_of_a_small_cluster_does_not_count():
     mark = disruption(run)
     assert float(mark["omega_disr"]) == pytest.approx(BREAK, rel=0.005)
     assert 5 * BREAK < float(mark["omega_stress_max"]) < 6 * BREAK
+
+
+def test_other_rules_read_the_same_run_otherwise():
+    """40 % lost at half of omega, and the rest bears more stress: which counts depends on the majority."""
+    run = make_run(BREAK, steps=[(0.5 * BREAK, 0.6), (BREAK, 0.2), (2 * BREAK, 0.01)])
+    omega = run["omega"].values
+    run["total_stress"].values[:] = np.where(omega < BREAK, (omega / BREAK) ** 2, 0.05)
+    early, late = (float(disruption(run, majority=part)["omega_disr"]) for part in (0.75, 0.5))
+    assert early == pytest.approx(0.5 * BREAK, rel=0.01) and late == pytest.approx(BREAK, rel=0.01)
+    run["total_stress"].values[3] = 50 * run["total_stress"].values.max()
+    spike = disruption(run, window=1)
+    assert float(spike["omega_disr"]) == omega[3] and spike.attrs["disruption_median_window"] == 1
+    assert float(disruption(run, window=9)["omega_disr"]) == pytest.approx(BREAK, rel=0.02)
 
 
 def test_peak_after_a_quarter_of_the_mass_is_lost_counts():

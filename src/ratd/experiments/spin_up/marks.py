@@ -128,7 +128,7 @@ def running_median(values, window=MEDIAN_WINDOW):
     return result
 
 
-def disruption(run):
+def disruption(run, *, majority=MAJORITY, window=MEDIAN_WINDOW):
     """Find the marks of disruption in one spin-up run.
 
     The definitions are in the text at the head of this module.
@@ -138,6 +138,11 @@ def disruption(run):
     run : xarray.Dataset
         What `ratd.spin_up` returns: over `record` the variables omega [rad s-1], mass [kg], n_contacts, total_stress
         [Pa], axis_a, axis_b, axis_c [m], porosity, n_fragments_lost; in the attributes the initial values.
+    majority : float
+        Part of the initial mass that the largest fragment must hold where the peak is looked for, above 0 and at most
+        1.
+    window : int
+        Records in the running median of the stress, an odd number.
 
     Returns
     -------
@@ -150,13 +155,16 @@ def disruption(run):
     Raises
     ------
     InputError
-        If the run has no records, lacks a variable or an attribute, or holds NaN where a number is needed.
+        If the run has no records, lacks a variable or an attribute, or holds NaN where a number is needed; if the
+        majority or the window is not allowed.
 
     References
     ----------
     Reissl et al. (2024), A&A 692, A60, Sect. 7.1, Fig. 4 and Eq. 32.
     """
     _check(run)
+    if not 0.0 < majority <= 1.0:
+        raise InputError(f"disruption: the majority is {majority!r}, but must be above 0 and at most 1")
     omega, mass, n_contacts, stress = (
         run[name].values.astype(float) for name in ("omega", "mass", "n_contacts", "total_stress")
     )
@@ -165,7 +173,9 @@ def disruption(run):
     end = run.attrs.get("end_reason", "the records end")
     last = len(omega) - 1
 
-    smooth, peak, top, reason = _peaks(mass_fraction, n_contacts, stress, run.attrs["initial_n_contacts"], end)
+    smooth, peak, top, reason = _peaks(
+        mass_fraction, n_contacts, stress, run.attrs["initial_n_contacts"], end, majority, window
+    )
     value = {}
 
     record = {
@@ -191,7 +201,7 @@ def disruption(run):
         else:
             value[name] = omega[k]
             median = name in ("omega_disr", "omega_stress_max")
-            value[f"{name}_uncertainty"] = _half_width(omega, k) if median else interval[k]
+            value[f"{name}_uncertainty"] = _half_width(omega, k, window) if median else interval[k]
 
     value["stress_peak"] = np.nan if peak is None else smooth[peak]
     value["n_contacts_max"] = n_contacts.max()
@@ -208,9 +218,9 @@ def disruption(run):
         if name in reason:
             marks[name].attrs["reason"] = reason[name]
     marks.attrs["missing_marks"] = "; ".join(f"{name}: {why}" for name, why in reason.items())
-    marks.attrs["disruption_majority"] = MAJORITY
+    marks.attrs["disruption_majority"] = majority
     marks.attrs["disruption_loss"] = LOSS
-    marks.attrs["disruption_median_window"] = MEDIAN_WINDOW
+    marks.attrs["disruption_median_window"] = window
     return marks
 
 
@@ -240,7 +250,7 @@ def before_marks(run, marks):
     return values
 
 
-def _peaks(mass_fraction, n_contacts, stress, initial_n_contacts, end):
+def _peaks(mass_fraction, n_contacts, stress, initial_n_contacts, end, majority, window):
     """Where the stress peaks, in the grain and in the whole run.
 
     Returns
@@ -254,17 +264,17 @@ def _peaks(mass_fraction, n_contacts, stress, initial_n_contacts, end):
     """
     last = len(stress) - 1
     reason = {}
-    minority = _first(mass_fraction < MAJORITY * (1 - ROUNDING))
+    minority = _first(mass_fraction < majority * (1 - ROUNDING))
     in_pieces = n_contacts[last] <= (1 if initial_n_contacts > 1 else 0)
     n_grain = len(stress) if minority is None else minority  # so many records belong to the grain
     # The two parts are filtered apart: no median across the break, and the grain may have its peak in its last record.
-    smooth = np.concatenate([running_median(stress[:n_grain]), running_median(stress[n_grain:])])
+    smooth = np.concatenate([running_median(part, window) for part in (stress[:n_grain], stress[n_grain:])])
     peak = top = None
     if minority is None and not in_pieces:
         held = f"{100 * mass_fraction[last]:.3g} % of the mass"
         reason["omega_disr"] = f"{end} while the largest fragment held {held}: the stress might have risen further"
     elif n_grain == 0:
-        reason["omega_disr"] = f"the first record is already below {100 * MAJORITY:g} % of the mass: record more often"
+        reason["omega_disr"] = f"the first record is already below {100 * majority:g} % of the mass: record more often"
     else:
         peak = _last_maximum(smooth[:n_grain])
     if in_pieces:
@@ -303,9 +313,9 @@ def _last_maximum(values):
     return len(values) - 1 - int(np.argmax(values[::-1]))
 
 
-def _half_width(omega, k):
+def _half_width(omega, k, window):
     """Greater of the distances in omega from record k to the two ends of the median window."""
-    half = MEDIAN_WINDOW // 2
+    half = window // 2
     below = omega[k] - omega[k - half] if k >= half else omega[k]
     above = omega[min(k + half, len(omega) - 1)] - omega[k]
     return max(abs(below), abs(above))
