@@ -52,6 +52,12 @@ def test_a_box_comes_back(tmp_path, grain, suffix):
         ("a.txt", "0 0 0 20\n0 0 40 20\n"),
         ("a.txt", "# made by hand\nx y z r\n0 0 0 20  # the first\n\n0 0 40 20\n"),
         ("a.dat", "x [nm]\ty\tz\tr\n0\t0\t0\t20\n0\t0\t40\t20\n".replace(" [nm]", "[nm]")),
+        ("a.txt", "# x y z r\n0 0 0 20\n0 0 40 20\n"),
+        ("a.txt", "# id x y z r\n1 0 0 0 20\n2 0 0 40 20\n"),
+        ("a.csv", "\ufeffx,y,z,radius\n0,0,0,20\n0,0,40,20\n"),
+        ("a.csv", "x [um],y [um],z [um],r [um]\n0,0,0,0.02\n0,0,0.04,0.02\n"),
+        ("a.txt", "x_µm y_µm z_µm r_µm\n0 0 0 0.02\n0 0 0.04 0.02\n"),
+        ("a.xyz", "2\nProperties=pos:R:3:r:R:1 unit=um\n0 0 0 0.02\n0 0 0.04 0.02\n"),
         ("a.csv", "radius,x,y,z,name\n20,0,0,0,a\n20,0,0,40,b\n"),
         ("a.csv", "0,0,0,20\n0,0,4e1,20\n"),
         ("a.xyz", "2\nProperties=pos:R:3:r:R:1\n0 0 0 20\n0 0 40 20\n"),
@@ -88,7 +94,16 @@ def test_files_as_others_write_them(tmp_path, name, text):
             ".it has no radii; its second line must be",
         ),
         ("a.xyz", '1\nProperties=pos:R:3:r:R:1 Lattice="9 1 0 0 9 0 0 0 9"\n0 0 0 2\n', "the box is not rectangular"),
-        ("a.dump", "ITEM: TIMESTEP\n", "is no .dump file of spheres"),
+        ("a.xyz", "-2\n\n", "a frame begins with '-2'; allowed: the number of its spheres"),
+        ("a.xyz", "1\nProperties=pos:R:3:r:R:1 unit=pc\n0 0 0 2\n", "its unit is 'pc'; allowed: m, cm"),
+        ("a.txt", "1 0 0 0 20\n", "it has 5 columns; more than x y z r need their names"),
+        ("a.csv", "x [um],y [nm],z [nm],r [nm]\n0,0,0,1\n", "its columns are in several units, nm, um"),
+        ("a.dump", "ITEM: TIMESTEP\n", "it has no line ITEM: ATOMS"),
+        (
+            "a.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y z radius\n1 0 0 0 100\n",
+            "it has no line ITEM: BOX BOUNDS",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_file_is_said_in_one_sentence(tmp_path, name, text, said):
@@ -100,6 +115,12 @@ def test_what_is_wrong_with_a_file_is_said_in_one_sentence(tmp_path, name, text,
 
 def test_wrong_arguments(tmp_path, grain):
     write_particles(grain, tmp_path / "a.txt")
+    write_particles(grain, tmp_path / "a.xyz", unit="um")
+    assert read_particles(tmp_path / "a.xyz").radius == pytest.approx(grain.radius)
+    with pytest.raises(InputError, match="states that its lengths are in um, and was to be read in nm"):
+        read_particles(tmp_path / "a.xyz", unit="nm")
+    with pytest.raises(InputError, match="frame is None; it must be a whole number"):
+        read_particles(tmp_path / "a.xyz", frame=None)
     with pytest.raises(InputError, match="read in m: radius has the median 21.*multiply those in nm by 1e-09"):
         read_particles(tmp_path / "a.txt", unit="m")
     with pytest.raises(InputError, match="unit is 'pc'; allowed: m, cm"):

@@ -155,6 +155,42 @@ def test_what_is_there_is_taken_and_other_runs_are_not_overwritten(chain, monkey
     assert target.read_bytes() == made
 
 
+def test_more_starts_are_added_to_those_that_are_there_and_fewer_take_none_away(chain, monkeypatch):
+    begun = []
+
+    def counted(grain, **how):
+        begun.append(grain.seed)
+        return ratd.spin_up(grain, **how)
+
+    assert run("spin-up", chain, *FAST, "--out", chain.with_name("whole")).exit_code == 0
+    monkeypatch.setattr(command, "spin_up", counted)
+    for starts, expected in ((2, [0, 1]), (3, [0, 1, 2]), (1, [0, 1, 2])):
+        done = run("spin-up", chain, *FAST[:4], "--starts", starts)
+        assert done.exit_code == 0 and begun == expected
+    assert "3 starts of 4 monomers" in done.stdout and f"{chain}: 4 spheres, radii 20.08 to 23.18 nm, 3 contacts" in done.stdout
+    assert not list(chain.parent.glob("*.partial"))
+    made = [run_files.read_runs(chain.with_name(f"{name}.nc")) for name in ("chain_spin_up", "whole")]
+    for own, other in zip(*made, strict=True):
+        assert own.equals(other)
+
+
+def test_unfinished_runs_of_other_settings_are_not_removed(chain, monkeypatch):
+    def stopped(grain, **how):
+        if grain.seed == 1:
+            raise KeyboardInterrupt
+        return ratd.spin_up(grain, **how)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(command, "spin_up", stopped)
+        assert run("spin-up", chain, *FAST).exit_code != 0
+    (folder,) = chain.parent.glob("*.partial")
+    kept = sorted(path.name for path in folder.iterdir())
+    assert "seed_0.nc" in kept
+    done = run("spin-up", chain, "--material", "a-C", *FAST[2:])
+    assert done.exit_code == 1 and "holds unfinished runs of another aggregate, other settings" in done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == kept
+
+
 def test_a_run_that_fails_ends_with_a_sentence_and_leaves_nothing(chain, monkeypatch):
     def fail(grain, **how):
         raise RuntimeError("the balance of energy is off")
@@ -186,16 +222,20 @@ def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
     ("arguments", "said"),
     [
         (("spin-up", "none.xyz", *FAST), "error: none.xyz: cannot be read"),
-        (("spin-up", "{chain}", *FAST, "--unit", "m"), "multiply those in nm by 1e-09"),
+        (("spin-up", "{bare}", *FAST, "--unit", "m"), "multiply those in nm by 1e-09"),
         (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not one of 'a-C'"),
-        (("spin-up", "{apart}", *FAST), "error: The aggregate is in 2 pieces"),
+        (("spin-up", "{apart}", *FAST), "apart.txt: The aggregate is in 2 pieces"),
+        (("spin-up", "{chain}", *FAST, "--unit", "um"), "states that its lengths are in nm, and was to be read in um"),
+        (("spin-up", "{chain}", *FAST, "--out", ""), "is a folder; allowed: a stem in it"),
+        (("show", "."), "'.' is a directory"),
         (("show", "none.nc"), "error: none.nc: cannot be read as netCDF"),
         (("melt", "{chain}"), "No such command 'melt'"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_sentence(chain, arguments, said):
     chain.with_name("apart.txt").write_text("0 0 0 20\n0 0 50 20\n")
-    names = {"chain": str(chain), "apart": str(chain.with_name("apart.txt"))}
+    chain.with_name("bare.txt").write_text("0 0 0 20\n0 0 40 20\n")
+    names = {"chain": str(chain), **{name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare")}}
     done = run(*[argument.format(**names) for argument in arguments])
     assert done.exit_code != 0 and said in done.output and "Traceback" not in done.output
 

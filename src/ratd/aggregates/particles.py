@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import check_radii, is_number
+from ratd.base.checks import check_radii, is_number, is_whole
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
 from ratd.pipeline.atomic import write_text
@@ -20,6 +20,7 @@ __all__ = ["Particles", "read_particles", "write_particles"]
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
 """Units of length in files, in m."""
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
+_UNIT = re.compile(r"[\s\[(_]([a-z]+)")
 _TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
 _XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
 SUFFIXES = (*_TABLES, *_XYZ, *_DUMP)
@@ -47,7 +48,7 @@ class Particles(NamedTuple):
         return Grain(self.position, self.radius, material, **about)
 
 
-def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Particles:
+def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -> Particles:
     """Read spheres from a file.
 
     Parameters
@@ -57,7 +58,8 @@ def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Parti
         ``.xyz``, ``.extxyz`` (extended XYZ with a column ``radius``); ``.dump``, ``.lammpstrj`` (text dump of LAMMPS
         with x y z or xu yu zu, and radius).
     unit : str, optional
-        Of all lengths in the file: m, cm, mm, um, nm or angstrom.
+        Of all lengths in the file: m, cm, mm, um, nm or angstrom. If not given, that which the file states (``x [um]``
+        in the names of its columns, ``unit=um`` in extended XYZ), or nm.
     frame : int, optional
         Which one, in a file of several; the last if not given.
 
@@ -70,13 +72,16 @@ def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Parti
     FileError
         One sentence with the file and what is wrong with it.
     InputError
-        If the unit is unknown, or the radii are not those of dust in it.
+        If the unit is unknown or another one than the file states, or the radii are not those of dust in it.
     """
     path = Path(path)
-    factor = _factor(unit)
+    if unit is not None:
+        _factor(unit)
     reader = _reader(path)
+    if not is_whole(frame):
+        raise InputError(f"frame is {frame!r}; it must be a whole number")
     try:
-        table, box = reader(path, frame)
+        table, box, stated = reader(path, frame)
         missing = [name for name in ("x", "y", "z", "radius") if name not in table]
         if missing:
             raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}")
@@ -91,6 +96,10 @@ def read_particles(path: str | Path, unit: str = "nm", frame: int = -1) -> Parti
         raise FileError(
             f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0{which}"
         )
+    if None not in (unit, stated) and _factor(unit) != _factor(stated):
+        raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
+    unit = unit or stated or "nm"
+    factor = _factor(unit)
     values = values * factor
     try:
         check_radii(values[:, 3])
@@ -118,17 +127,38 @@ def _reader(path):
 def _read_table(path, frame):
     """Columns x, y, z and r or radius, by their names or, without these, in this order."""
     separator = "," if path.suffix == ".csv" else r"\s+"
-    lines = [line.partition("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines()]
+    # some programs begin a file with a mark of its encoding
+    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    if lines and _names_columns(lines[0].lstrip("# "), separator):
+        lines[0] = lines[0].lstrip("# ")
+    lines = [line.partition("#")[0].strip() for line in lines]
     lines = [line for line in lines if line] or [""]
-    words = [word.strip().strip('"').lower() for word in re.split(separator, lines[0])]
+    words = _words(lines[0], separator)
     named = any(re.match(r"[a-z]", word) and word not in ("nan", "inf") for word in words)
     table = pd.read_csv(StringIO("\n".join(lines[int(named) :])), sep=separator, header=None)
-    if named:
-        table.columns = [_COLUMNS.get(re.split(r"[\s\[(_]", word)[0], word) for word in words]
-    else:
-        names = ["x", "y", "z", "radius"]
-        table.columns = (names + [f"column {k}" for k in range(5, len(table.columns) + 1)])[: len(table.columns)]
-    return table, None
+    names = ["x", "y", "z", "radius"]
+    if not named and len(table.columns) > len(names):
+        raise ValueError(f"it has {len(table.columns)} columns; more than x y z r need their names in the first line")
+    table.columns = [_name(word) for word in words] if named else names[: len(table.columns)]
+    stated = {unit for word in words if _name(word) in names for unit in _UNIT.findall(word)} & set(UNITS)
+    if len(stated) > 1:
+        raise ValueError(f"its columns are in several units, {', '.join(sorted(stated))}")
+    return table, None, next(iter(stated), None)
+
+
+def _words(line, separator):
+    """Words of a line of a table."""
+    return [word.strip().strip('"').lower().replace("µ", "u").replace("μ", "u") for word in re.split(separator, line)]
+
+
+def _name(word):
+    """Name of a column as we call it, without its unit."""
+    return _COLUMNS.get(re.split(r"[\s\[(_]", word)[0], word)
+
+
+def _names_columns(line, separator):
+    """Whether a line names all columns that are needed."""
+    return {"x", "y", "z", "radius"} <= {_name(word) for word in _words(line, separator)}
 
 
 def _frames(lines, length):
@@ -136,6 +166,8 @@ def _frames(lines, length):
     frames = []
     while lines and any(line.strip() for line in lines):
         n = length(lines)
+        if n < 1:
+            raise ValueError(f"a frame begins with {lines[0]!r}; allowed: the number of its spheres")
         if n > len(lines):
             raise ValueError(f"the last frame has {len(lines)} lines instead of {n}")
         frames.append(lines[:n])
@@ -170,9 +202,12 @@ def _read_xyz(path, frame):
         )
     table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
     periodic = about.get("pbc", "T T T" if "Lattice" in about else "").split()
+    stated = about.get("unit")
+    if stated is not None and stated not in UNITS:
+        raise ValueError(f"its unit is {stated!r}; allowed: {', '.join(UNITS)}")
     if "Lattice" not in about or "T" not in periodic:
-        return table, None
-    return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3))
+        return table, None, stated
+    return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3)), stated
 
 
 def _diagonal(lattice):
@@ -186,12 +221,16 @@ def _read_dump(path, frame):
     lines = path.read_text(encoding="utf-8").splitlines()
 
     def length(lines):
-        at = lines.index("ITEM: NUMBER OF ATOMS")
-        return next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS")) + 1 + int(lines[at + 1])
+        return section(lines, "ITEM: ATOMS") + 1 + int(lines[section(lines, "ITEM: NUMBER OF ATOMS") + 1])
+
+    def section(lines, name):
+        at = next((k for k, line in enumerate(lines) if line.startswith(name)), None)
+        if at is None:
+            raise ValueError(f"it has no line {name}")
+        return at
 
     lines = _chosen(_frames(lines, length), frame)
-    at = next(k for k, line in enumerate(lines) if line.startswith("ITEM: BOX BOUNDS"))
-    begin = next(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    at, begin = section(lines, "ITEM: BOX BOUNDS"), section(lines, "ITEM: ATOMS")
     bounds = np.array([line.split() for line in lines[at + 1 : at + 4]], dtype=float)
     if bounds.shape[1] != 2:
         raise ValueError("the box is not rectangular; allowed: edges along x, y and z")
@@ -200,7 +239,7 @@ def _read_dump(path, frame):
     table = pd.read_csv(body, sep=r"\s+", header=None, names=[_COLUMNS.get(name, name) for name in names])
     if "id" in table:
         table = table.sort_values("id", ignore_index=True)
-    return table, bounds[:, 1] - bounds[:, 0] if "p" in lines[at] else None
+    return table, bounds[:, 1] - bounds[:, 0] if "p" in lines[at].split("BOUNDS")[1] else None, None
 
 
 def write_particles(content, path: str | Path, unit: str = "nm") -> None:

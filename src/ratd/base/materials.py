@@ -18,6 +18,15 @@ __all__ = [
 ]
 
 
+PLAUSIBLE = {
+    "surface_energy": (0.0, 10.0, "J/m2"),
+    "youngs_modulus": (1e4, 1e13, "Pa"),
+    "density": (10.0, 3e4, "kg/m3"),
+    "critical_rolling_displacement": (0.0, 1e-6, "m"),
+}
+"""Between which values a constant of a solid lies, and its unit: what lies outside was given in another one."""
+
+
 @dataclass(frozen=True)
 class Material:
     """What a monomer is made of.
@@ -72,6 +81,12 @@ class Material:
                 allowed, good = "a number above 0", lambda number: number > 0.0
             if not (is_number(value) and good(value)):
                 raise InputError(f"Material {self.name!r} has {field.name} = {value!r}; it must be {allowed}.")
+            low, high, unit = PLAUSIBLE.get(field.name, (0.0, math.inf, ""))
+            if not low <= value <= high:
+                raise InputError(
+                    f"Material {self.name!r} has {field.name} = {value!r}; it is in {unit}, and no solid has one below "
+                    f"{low:g} or above {high:g}."
+                )
             object.__setattr__(self, field.name, float(value))  # numbers of numpy would stand in hashes and files
 
     @property

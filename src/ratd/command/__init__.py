@@ -11,6 +11,7 @@ a line in `SHOWN`.
 """
 
 import sys
+import warnings
 from importlib import import_module
 
 import click
@@ -50,7 +51,10 @@ class _Commands(click.Group):
 
     def invoke(self, context):
         try:
-            return super().invoke(context)
+            with warnings.catch_warnings():
+                warnings.simplefilter("once", UserWarning)
+                warnings.showwarning = lambda message, *where, **more: click.echo(f"warning: {message}", err=True)
+                return super().invoke(context)
         except (InputError, FileError, RuntimeError) as error:
             click.echo(f"error: {error}", err=True)
             sys.exit(1)

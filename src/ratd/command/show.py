@@ -12,6 +12,7 @@ from ratd.aggregates.files import read_grains
 from ratd.aggregates.particles import read_particles
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS
+from ratd.experiments.command import out_option, unit_option
 from ratd.geometry.shape import Shape, centre_of_mass
 from ratd.pictures.snapshots import OTHERS
 from ratd.pictures.spheres import render, view_axes
@@ -24,10 +25,10 @@ VIEW, UP = (0.75, -0.55, 0.37), (0.0, 0.0, 1.0)
 
 
 @click.command("show")
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--unit", default="nm", show_default=True, help="Of a file of spheres.")
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@unit_option()
 @click.option("--material", type=click.Choice(list(MATERIALS)), help="Of a file of spheres: counts its contacts.")
-@click.option("--out", type=click.Path(path_type=Path), help="Stem of the files written.  [default: that of FILE]")
+@out_option("that of FILE")
 def command(file, unit, material, out):
     """Show what is in FILE: spheres, or results of ratd."""
     out = file.with_suffix("") if out is None else out

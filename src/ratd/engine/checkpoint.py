@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ratd.base.errors import FileError, InputError
 from ratd.engine.state import State, copied
+from ratd.pipeline.atomic import atomic
 from ratd.pipeline.provenance import source_hash
 
 
@@ -42,20 +44,25 @@ def _source(module):
 
 def save(path, key, state, **tables):
     """Write a state and tables of numbers to a file, which is replaced whole or not at all."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    with open(temporary, "wb") as file:
-        tables = {f"table_{name}": np.array(table) for name, table in tables.items()}
+    tables = {f"table_{name}": np.array(table) for name, table in tables.items()}
+    with atomic(path) as temporary, open(temporary, "wb") as file:
         np.savez(file, key=key, **tables, **state._asdict())
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
 
 
 def load(path, key):
-    """State and dict of tables of a file; None when there is none, or it is damaged or of another run."""
-    if path is None or not Path(path).exists():
+    """State and dict of tables of a file; None when there is none, or it is damaged or of another run.
+
+    Raises
+    ------
+    InputError, FileError
+        If no checkpoint can be written there, which is better known before a long run than in its middle.
+    """
+    if path is None:
+        return None
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(f"checkpoint is {path!r}; it must be the path of a file, or None.")
+    _check_place(Path(path))
+    if not Path(path).exists():
         return None
     try:
         with np.load(path, allow_pickle=False) as file:
@@ -64,5 +71,15 @@ def load(path, key):
             state = copied(State(**{name: file[name] for name in State._fields}))
             tables = {name[6:]: file[name] for name in file.files if name.startswith("table_")}
             return state, tables
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    # a damaged file may say anything of itself, also that it is encrypted
+    except (OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile):
         return None
+
+
+def _check_place(path):
+    """Raise FileError where no file can be written."""
+    if path.is_dir():
+        raise FileError(f"{path}: is a folder; allowed: the name of a file for the checkpoint")
+    folder = next(folder for folder in path.absolute().parents if folder.exists())
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise FileError(f"{path}: no checkpoint can be written below {folder}")

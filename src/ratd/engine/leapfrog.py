@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
@@ -109,9 +110,9 @@ def leapfrog(*, timestep_factor=0.125, timestep=None, damping="implicit"):
     ------
     InputError
     """
-    if not (np.isfinite(timestep_factor) and 0.0 < timestep_factor <= 1.0):
+    if not (is_number(timestep_factor) and 0.0 < timestep_factor <= 1.0):
         raise InputError(f"timestep_factor is {timestep_factor!r}; it must be above 0 and at most 1.")
-    if timestep is not None and not (np.isfinite(timestep) and timestep > 0.0):
+    if timestep is not None and not (is_number(timestep) and timestep > 0.0):
         raise InputError(f"timestep is {timestep!r}; it must be a number above 0 in s, or None.")
     if damping not in DAMPINGS:
         raise InputError(f"damping is {damping!r}; allowed are {', '.join(DAMPINGS)}.")

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
@@ -323,11 +324,11 @@ def semi_implicit(
     """
     numbers = {"longest": longest, "displacement": displacement, "travel": travel, "first": first}
     for name, value in numbers.items():
-        if not (np.isfinite(value) and value > 0.0):
+        if not (is_number(value) and value > 0.0):
             raise InputError(f"{name} is {value!r}; it must be a number above 0.")
-    if not 0.25 <= theta <= 10.0:
+    if not (is_number(theta) and 0.25 <= theta <= 10.0):
         raise InputError(f"theta is {theta!r}; it must be between 0.25 and 10.")
-    if not 0.0 <= calming < 1.0:
+    if not (is_number(calming) and 0.0 <= calming < 1.0):
         raise InputError(f"calming is {calming!r}; it must be between 0 and 1.")
     for name, value in {"calmed": calmed, "landing": landing}.items():
         if not value > 0.0:

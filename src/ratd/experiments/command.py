@@ -13,16 +13,28 @@ import click
 import numpy as np
 
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.particles import UNITS
+from ratd.aggregates.particles import UNITS, read_particles
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
+from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.pipeline import io
+from ratd.pipeline.atomic import atomic
 from ratd.pipeline.blocks import rows
 from ratd.pipeline.partial import Block, Pieces, locked
 
-__all__ = ["aggregate_options", "answer", "moved", "progress_bar", "several", "started"]
+__all__ = [
+    "aggregate",
+    "aggregate_options",
+    "answer",
+    "moved",
+    "out_option",
+    "progress_bar",
+    "several",
+    "started",
+    "unit_option",
+]
 
 SHIFT = 1e-12
 """How far the monomers of a start are moved [m], a hundredth of an atom."""
@@ -31,18 +43,65 @@ SHIFT = 1e-12
 def aggregate_options(function):
     """Arguments and options that say which aggregate is meant, of what, and how often; a decorator."""
     for decorate in (
-        click.option(
-            "--out",
-            type=click.Path(path_type=Path),
-            help="Stem of the files written.  [default: that of FILE and what is done]",
-        ),
+        out_option("that of FILE and what is done"),
         click.option("--starts", default=5, show_default=True, type=click.IntRange(1, 1000), help="Number of starts."),
-        click.option("--unit", default="nm", show_default=True, type=click.Choice(list(UNITS)), help="Of FILE."),
+        unit_option(),
         click.option("--material", required=True, type=click.Choice(list(MATERIALS)), help="Of all monomers."),
-        click.argument("file", type=click.Path(path_type=Path)),
+        click.argument("file", type=click.Path(path_type=Path, dir_okay=False)),
     ):
         function = decorate(function)
     return function
+
+
+def unit_option():
+    """The option that says in which unit the lengths of a file are."""
+    units = click.Choice(list(UNITS))
+    return click.option("--unit", type=units, help="Of the lengths in FILE.  [default: what FILE states, or nm]")
+
+
+def out_option(default):
+    """The option that says where to write."""
+    path = click.Path(path_type=Path)
+    return click.option("--out", type=path, callback=_stem, help=f"Stem of the files written.  [default: {default}]")
+
+
+def _stem(context, parameter, value):
+    """A stem that files can be named after."""
+    if value is None:
+        return None
+    if not value.name or value.is_dir():
+        raise click.BadParameter(f"{value} is a folder; allowed: a stem in it, such as {value / 'mine'}")
+    return value.with_suffix("") if value.suffix == ".nc" else value
+
+
+def aggregate(path, unit, material):
+    """Spheres of a file that hang together, of which the number and the radii are said.
+
+    Parameters
+    ----------
+    path : path-like
+    unit : str or None
+    material : str
+
+    Returns
+    -------
+    ratd.Particles
+    grain : ratd.Grain
+
+    Raises
+    ------
+    FileError, InputError
+        One sentence with the file.
+    """
+    particles = read_particles(path, unit=unit)
+    try:
+        grain = particles.grain(material)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    least, most = (f"{extreme / NM:.4g}" for extreme in (grain.radius.min(), grain.radius.max()))
+    radii = f"radius {least}" if least == most else f"radii {least} to {most}"
+    click.echo(f"{path}: {plural(grain.n_monomers, 'sphere')}, {radii} nm, {plural(grain.n_contacts, 'contact')}")
+    return particles, grain
 
 
 def moved(position, start):
@@ -104,13 +163,19 @@ def several(target, kind, material, provenance, starts, make):
     Raises
     ------
     InputError
-        If the file holds other runs.
+        If the file holds other runs, or others are not finished.
     """
     block = Block(Path(target), material, list(range(starts)), provenance)
-    if block.target.exists() and _is_there(block, kind):
+    there = _starts_there(block, kind) if block.target.exists() else 0
+    if there >= starts:
         return
+    _check_unfinished(block, kind)
     try:
         with locked(block.folder / "lock", logging.getLogger(__name__)):
+            if there:
+                # so that more starts are added to those of the file
+                with atomic(block.piece(0)) as piece:
+                    shutil.copyfile(block.target, piece)
             pieces = Pieces(block, kind)
             with progress_bar(starts) as tell:
                 for start in block.seeds:
@@ -128,15 +193,28 @@ def several(target, kind, material, provenance, starts, make):
     shutil.rmtree(block.folder, ignore_errors=True)
 
 
-def _is_there(block, kind):
-    """Whether a file holds these very runs; InputError where it holds those of other settings."""
+def _starts_there(block, kind):
+    """How many of these very runs a file holds; InputError where it holds those of other settings."""
     found = io.read(block.target, kind)
     if any(found.attrs.get(name) != block.provenance[name] for name in ("code_hash", "settings_hash", "input_hash")):
         raise InputError(
             f"{block.target} holds runs of another aggregate, other settings or another version of ratd; remove it, or "
             "give another --out."
         )
-    return len(rows(found, kind)) == len(block.seeds)
+    return len(rows(found, kind))
+
+
+def _check_unfinished(block, kind):
+    """InputError where runs of other settings have been begun, which this command would remove."""
+    own = {block.checkpoint(seed).name.split(".")[1] for seed in block.seeds}
+    others = [path for path in block.folder.glob("seed_*.checkpoint") if path.name.split(".")[1] not in own]
+    pieces = block.folder.glob("seed_*.nc")
+    others += [path for path in pieces if io.read_made_with(path, kind, block.provenance) is None]
+    if others:
+        raise InputError(
+            f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
+            "finish them with their own command, remove the folder, or give another --out."
+        )
 
 
 class progress_bar:

@@ -169,7 +169,10 @@ def periodic(length, rate=0.0, *, scheme="homogeneous"):
         raise InputError(f"scheme is {scheme!r}; allowed are {', '.join(SCHEMES)}.")
     values = []
     for name, value in (("length", length), ("rate", rate)):
-        three = np.asarray(value, dtype=float)
+        try:
+            three = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            three = np.full(3, np.nan)
         if three.shape not in ((), (3,)) or not np.isfinite(three).all() or (name == "length" and (three <= 0).any()):
             allowed = "a finite number" + (" above 0" if name == "length" else "") + ", or three of them"
             raise InputError(f"The {name} of a periodic box is {value!r}; it must be {allowed}.")

@@ -22,6 +22,8 @@ from ratd.pipeline import blocks, io
 from ratd.pipeline.provenance import settings_hash
 
 _OWN_NAMES = r"lock|seed_\d+(\.nc|\.[0-9a-f]+\.checkpoint)(\.\d+\.tmp)?"
+TRIES = 100
+"""How often a lock is tried whose folder is removed meanwhile."""
 WORK_BETWEEN_PIECES = 20
 """Work that a kill may cost, over the time that writing a piece takes: short grains share one."""
 
@@ -143,12 +145,12 @@ def locked(path, log):
         Told when there is something to wait for.
     """
     path = Path(path)
-    while True:
+    for left in range(TRIES, -1, -1):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle = open(path, "a")
         except FileNotFoundError as error:
-            if path.parent.parent.is_dir():  # `tidy` removed the folder at this moment
+            if left and path.parent.parent.is_dir():  # `tidy` removed the folder at this moment
                 continue
             raise FileError(f"{path}: cannot be written ({error.strerror})") from error
         except OSError as error:

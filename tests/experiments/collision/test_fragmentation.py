@@ -74,6 +74,11 @@ def test_bad_tables_are_refused(rows, words):
         fragmentation_velocity(rows)
 
 
+def test_a_velocity_without_a_value_is_passed_over():
+    table = pd.DataFrame({"velocity": [1.0, 2.0, 3.0] * 4, "X": [1.0, np.nan, 0.0] * 4})
+    assert 1.0 < fragmentation_velocity(table)["velocity"] < 3.0
+
+
 def test_the_bootstrap_has_the_standard_error_of_the_mean():
     """Of few rotations and of few samples too, whose rotations do not make the error smaller; at all velocities."""
     rng = np.random.default_rng(5)

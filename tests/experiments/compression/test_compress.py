@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import ratd
 from ratd.aggregates.strength import rolling_pressure, sound_speed_kataoka2013
@@ -216,11 +217,21 @@ def test_a_compression_that_is_too_fast_is_warned_of(cluster):
         ({"snapshots": [0.1, "x"]}, "snapshots is .* must be a sequence of numbers above 0"),
         ({"scheme": "other"}, "scheme is 'other'; allowed are homogeneous, as_printed"),
         ({"material": "x"}, "x"),
+        ({"timestep_factor": "a"}, "timestep_factor is 'a'; it must be above 0"),
+        ({"checkpoint": 5}, "checkpoint is 5; it must be the path of a file"),
     ],
 )
 def test_bad_input_is_one_sentence(cluster, arguments, said):
     with pytest.raises(ratd.InputError, match=said):
         ratd.compress(cluster, **arguments)
+
+
+def test_where_no_checkpoint_can_be_written_is_said_before_the_run(cluster, tmp_path):
+    with pytest.raises(ratd.FileError, match="is a folder; allowed: the name of a file for the checkpoint"):
+        ratd.compress(cluster, checkpoint=tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ratd.FileError, match="no checkpoint can be written below .*file"):
+        ratd.compress(cluster, checkpoint=tmp_path / "file" / "run")
 
 
 def test_what_is_no_aggregate_in_one_piece_is_refused(cluster):
@@ -244,6 +255,25 @@ def test_a_pulled_cluster_comes_apart(run):
     assert pulled.attrs["phi_strength"] < pulled.attrs["phi_start"] == run["phi"].values[-1]
     # the tension falls once the cluster parts
     assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
+
+
+def test_a_dense_cluster_that_still_presses_on_its_box_is_pulled_until_it_parts():
+    """In the first tenth of the pull there is no tension yet."""
+    pressed = ratd.compress(ratd.grow_bcca(16, material="ice", seed=2), 1e-4, 0.6)
+    pulled = ratd.stretch(pressed, 1e-4)
+    tension = pulled["tension"].values
+    assert tension[:10].max() < 0.0 < pulled.attrs["tensile_strength"]
+    assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
+    # a pull goes on from another one
+    again = ratd.stretch(pulled, 1e-4)
+    assert again.attrs["phi_start"] == pytest.approx(pulled["phi"].values[-1])
+
+
+def test_a_pull_goes_on_from_a_file_of_whole_numbers_of_half_the_length(run, tmp_path):
+    run.to_netcdf(tmp_path / "run.nc", engine="scipy")
+    classic = xr.load_dataset(tmp_path / "run.nc", engine="scipy")
+    assert classic["state_counter"].dtype != run["state_counter"].dtype
+    assert ratd.stretch(classic, 3e-5)["tension"].equals(ratd.stretch(run, 3e-5)["tension"])
 
 
 def test_a_box_lets_go_of_a_cluster_before_it_is_pulled(cluster):
@@ -329,6 +359,8 @@ def test_bad_input_of_a_pull_is_one_sentence(run, arguments, said):
         ratd.stretch(run[["phi"]])
     with pytest.raises(ratd.InputError, match="compressed must be a ratd.Grain, or what ratd.compress returned"):
         ratd.stretch(None)
+    with pytest.raises(ratd.InputError, match="compressed must be a ratd.Grain, or what ratd.compress returned"):
+        ratd.stretch(run.isel(record=slice(0, 0)))
 
 
 def test_the_state_of_a_run_can_be_taken_up(run):

@@ -145,6 +145,25 @@ def test_compressive_strength_of_runs():
     assert alone["n"] == 1 and np.isnan(alone["exponent_error"])
 
 
+def test_a_range_that_no_run_covers_has_no_strength():
+    phi = np.geomspace(0.1, 0.5, 400)
+    run = xr.Dataset({name: ("record", phi) for name in ("phi", "phi_mean")}, attrs={"rolling_pressure": P_0})
+    run["pressure"] = ("record", P_0 * phi**3)
+    run["pressure_tensor"] = (("record", "component"), np.zeros((400, 6)))
+    for name in ("n_contacts", "work", "energy_residual", "stored_normal", "dissipated_rolling"):
+        run[name] = ("record", phi)
+    assert ratd.compressive_strength(run, 0.12, 0.4)["exponent"] == pytest.approx(3.0, rel=1e-3)
+    for low, high, said in (
+        (0.03, 0.12, "no run covers the filling factors from 0.03 to 0.12"),
+        (0.12, 0.6, "no run covers"),
+        (0.12, 0.122, "a power law needs 3 at least"),
+        (0.3, 0.2, "the lower one first"),
+        ("a", 0.2, "must be numbers above 0"),
+    ):
+        with pytest.raises(ratd.InputError, match=said):
+            ratd.compressive_strength(run, low, high)
+
+
 def test_equal_monomers_are_a_case_of_unequal_ones():
     E_roll, r_0 = 4.7e-16, 1e-7
     assert derived_pressure(E_roll, r_0, r_0**3) == pytest.approx(E_roll / r_0**3)

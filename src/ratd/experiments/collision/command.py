@@ -6,14 +6,13 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.particles import read_particles
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.collision.figures.snapshots import PANELS, origin_of, picture, positions
 from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
-from ratd.experiments.command import aggregate_options, answer, part_done, several
+from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several
 from ratd.laws.dmt_with_friction import FRICTIONS, dmt
 from ratd.pictures.collision_page import collision_page
 from ratd.pictures.style import save
@@ -31,7 +30,11 @@ SNAPSHOTS = 5
 @click.command("collide")
 @aggregate_options
 @click.option("--velocity", required=True, type=click.FloatRange(0, 1e4, min_open=True), help="Of the collision [m/s].")
-@click.option("--other", type=click.Path(path_type=Path), help="File with the other aggregate.  [default: the same]")
+@click.option(
+    "--other",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="File with the other aggregate.  [default: the same]",
+)
 @click.option(
     "--impact-parameter", default=0.0, show_default=True, type=click.FloatRange(0, 1, max_open=True),
     help="In the sum of the radii of both.",
@@ -50,7 +53,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     if velocity * duration < 2.0 * GAP:
         raise InputError(too_short(velocity, duration))
     files = [file] if other is None else [file, other]
-    grains = [read_particles(path, unit=unit).grain(material) for path in files]
+    grains = [aggregate(path, unit, material)[1] for path in files]
     out = file.with_name(f"{file.stem}_collided") if out is None else out
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
     source = source_hash(modules=["ratd.experiments.collision.run"])

@@ -189,12 +189,14 @@ def bootstrap_means(table, column, velocities, count, rng):
         NaN where none of the samples drawn has the velocity.
     """
     own = pd.DataFrame({"velocity": table["velocity"], "sample": _samples(table), "value": table[column]}).dropna()
-    by_sample = own.groupby(["velocity", "sample"])["value"].mean().unstack()
+    by_sample = own.groupby(["velocity", "sample"])["value"].mean().unstack().reindex(velocities)
     names = len(by_sample.columns)
     chosen = rng.integers(max(names, 1), size=(count, names))
     drawn_means = np.full((len(velocities), count), np.nan)
     for row, velocity in zip(drawn_means, velocities, strict=True):
         values = by_sample.loc[velocity].to_numpy()
+        if not np.isfinite(values).any():
+            continue
         if np.isfinite(values).sum() > 1:
             picked = values[chosen]
         else:

@@ -6,10 +6,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.particles import read_particles
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
@@ -45,11 +44,10 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
     runs stand in OUT.nc, a figure in OUT.png, the first one in 3D in OUT.html. After Ctrl-C the same command goes on.
     """
-    particles = read_particles(file, unit=unit)
+    particles, _ = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_compressed") if out is None else out
     settings = {"material": material, "unit": unit, "strain_rate": strain_rate, "until_phi": until_phi}
     made_with = provenance(source_hash(modules=["ratd.experiments.compression.run"]), settings, [file])
-    particles.grain(material)  # says what is wrong before anything is begun
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()

@@ -8,13 +8,14 @@ import xarray as xr
 from ratd.engine.state import State
 from ratd.experiments.compression.files import REFERENCE, read_cluster
 from ratd.experiments.compression.squeeze import law_of, squeezed, told
+from ratd.experiments.compression.strain import FIELD_TYPES
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline import io
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
 
 __all__ = ["press", "pressed", "pulled", "run"]
 
-TWO_AXES, WHOLE, UNSIGNED = ("lost", "material"), ("identity", "fragment", "kind", "counter"), ("pair_i", "pair_j")
+TWO_AXES = ("lost", "material")
 
 
 def _state_variables():
@@ -22,7 +23,7 @@ def _state_variables():
     found = {}
     for name in State._fields:
         dims = tuple(f"{name}_{axis}" for axis in range(1 + (name in TWO_AXES)))
-        dtype = "i8" if name in WHOLE else "u8" if name in UNSIGNED else "f8"
+        dtype = FIELD_TYPES.get(name, "f8")
         meaning = f"{name} of the state, numbers in SI units as ratd.engine.state.State lays them out"
         found[f"state_{name}"] = Variable(dims, dtype, "1", meaning, nan=dtype == "f8")
     return found

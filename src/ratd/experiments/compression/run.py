@@ -314,7 +314,8 @@ def balance_check(explicit, long):
         if not abs(off) <= allowed[-1] * moved:
             raise RuntimeError(
                 f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are "
-                f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: take a smaller time step"
+                f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: take a lower "
+                "strain_rate, or a smaller timestep_factor"
             )
 
     return check

@@ -49,6 +49,11 @@ def columns():
 
 
 COLUMNS = columns()
+FIELD_TYPES = {
+    **dict.fromkeys(("identity", "fragment", "kind", "counter"), "i8"),
+    **dict.fromkeys(("pair_i", "pair_j"), "u8"),
+}
+"""Array of a state -> its type; all others hold floating-point numbers."""
 
 
 class Parts(NamedTuple):
@@ -211,5 +216,5 @@ def strain_dataset(state, rows, parts):
 
 
 def state_of(run):
-    """The state at the end of a run, from the dataset of `strain_dataset`."""
-    return State(**{name: run[f"state_{name}"].values.copy() for name in State._fields})
+    """The state at the end of a run, from the dataset of `strain_dataset`, also from a file that kept other types."""
+    return State(**{name: run[f"state_{name}"].values.astype(FIELD_TYPES.get(name, "f8")) for name in State._fields})

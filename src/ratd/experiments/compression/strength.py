@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.measured import Measured
 from ratd.base.statistics import jackknife_error
@@ -36,6 +37,8 @@ LIMIT_RANGE = (0.1, 0.5)
 """Filling factors between which the law with a greatest filling factor is fitted."""
 FARTHEST = 4
 """Distances of N(<r) over which the slope far away is taken."""
+FEWEST_BINS = 3
+"""Bins with a mean pressure above 0 that a fit needs."""
 NEAR = 1.11
 """A value at phi is that of all bins from phi/NEAR to phi NEAR."""
 
@@ -82,7 +85,8 @@ def _within(table, low, high):
     inside = (phi >= low) & (phi <= high)
     pressure = table["pressure"].values[:, inside]
     whole = np.isfinite(pressure).all(axis=1)
-    if not inside.any() or not whole.any() or phi.max() * BIN < high / NEAR:
+    covered = phi.min() / BIN <= low * NEAR and phi.max() * BIN >= high / NEAR
+    if not inside.any() or not whole.any() or not covered:
         raise InputError(f"no run covers the filling factors from {low:g} to {high:g}.")
     return phi[inside], pressure[whole]
 
@@ -112,6 +116,11 @@ def fit_power_law(table, low=FIT_RANGE[0], high=FIT_RANGE[1]):
 
     def fit(mean):
         good = mean > 0.0
+        if good.sum() < FEWEST_BINS:
+            raise InputError(
+                f"between the filling factors {low:g} and {high:g} the pressure is above 0 in {good.sum()} bins; a "
+                f"power law needs {FEWEST_BINS} at least."
+            )
         x, y = np.log(phi[good] / 0.1), np.log(mean[good])
         slope, constant = np.polyfit(x, y, 1)
         return np.array([3.0 + slope, np.exp(constant), np.exp(y.mean())])
@@ -389,10 +398,12 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     ------
     InputError
         If there is no run, one is no compression, they are of several materials or sizes of monomers, or none covers
-        the range.
+        the range, with some pressure above 0.
     """
     found = list(run) if isinstance(run, list | tuple) else [run]
     _check_runs(found)
+    if not (is_number(low) and is_number(high) and 0.0 < low < high):
+        raise InputError(f"low and high are {low!r} and {high!r}; they must be numbers above 0, the lower one first.")
     first = min(bins(each["phi_mean"].values[:1])[0] for each in found)
     last = max(bins(each["phi_mean"].values[-1:])[0] for each in found)
     table = xr.Dataset({"phi": ("phi_bin", BIN ** (np.arange(first, last + 1) + 0.5))})

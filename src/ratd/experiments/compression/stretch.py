@@ -1,7 +1,5 @@
 """Pull a compressed cluster until it comes apart, in a periodic box that grows."""
 
-from dataclasses import fields
-
 import numpy as np
 import xarray as xr
 
@@ -23,6 +21,7 @@ from ratd.experiments.evolve import touching_at_start
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.geometry.box import periodic
 from ratd.laws.chosen import check_stiffness, law_of
+from ratd.pipeline.kinds import MATERIAL
 
 __all__ = ["AXES", "stretch", "tension"]
 
@@ -81,7 +80,8 @@ def stretch(
     -------
     xarray.Dataset
         As of `ratd.compress`, without snapshots. ``tension`` is -P_xx, or -P where all axes are pulled. The attributes
-        hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, ``phi_strength``, where that is,
+        hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, 0 where there is no tension,
+        ``phi_strength``, where that is,
         ``phi_start`` and ``residual_pressure`` [Pa], what the aggregate at rest presses with.
 
     Raises
@@ -98,7 +98,7 @@ def stretch(
     """
     if axes not in tuple(AXES):
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
-    if not (isinstance(compressed, Grain) or isinstance(compressed, xr.Dataset) and "state_monomer" in compressed):
+    if not (isinstance(compressed, Grain) or _has_state(compressed)):
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
     if isinstance(compressed, Grain) != (box_length is not None):
         raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
@@ -116,7 +116,7 @@ def stretch(
         raise InputError(
             f"law is {law!r}; it must be that of the compression, {attrs['law']}, whose contacts the aggregate has."
         )
-    material = Material(attrs["material"], *(attrs[field.name] for field in fields(Material) if field.name != "name"))
+    material = Material(attrs["material"], **{name: attrs[name] for name in MATERIAL})
     integrator, _ = integrators(
         material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps, strain_rate
     )
@@ -138,11 +138,15 @@ def stretch(
     parts = Parts(law, periodic(edges, np.array(AXES[axes]) * rate), integrator)
 
     def tell(row, seconds_to_go):
-        progress(row["phi"], -row["pressure_tensor"][0], seconds_to_go)
+        progress(row["phi"], -(row["pressure_tensor"][0] if axes == "x" else row["pressure"]), seconds_to_go)
 
     def done(rows):
         pull = tension(rows[1:], axes)
-        return len(pull) > 5 * WINDOW and pull[-WINDOW:].mean() < FALLEN * _smooth(pull).max()
+        if len(pull) <= 5 * WINDOW:
+            return False
+        greatest = _smooth(pull).max()
+        # at first the box may still press on it
+        return greatest > 0.0 and pull[-WINDOW:].mean() < FALLEN * greatest
 
     check = balance_check({0.0: BALANCE}, {0.0: LONG_BALANCE})
     state, rows, _ = strain(
@@ -156,12 +160,21 @@ def stretch(
         tension(rows[1:], axes),
         {"units": "Pa", "long_name": "tension along the pulled axes"},
     )
-    about = {"tensile_strength": pull[best], "phi_strength": _smooth(found["phi_mean"].values)[best]}
+    # what falls apart as soon as nothing presses on it has no strength
+    held = pull[best] > 0.0
+    about = {"tensile_strength": pull[best] if held else 0.0}
+    about["phi_strength"] = _smooth(found["phi_mean"].values)[best] if held else np.nan
     about |= {"phi_start": rows[0, COLUMNS["phi"][0]], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
-    kept = {name: attrs[name] for name in ("material", "time_unit", "monomer_radius", "seed", "n_monomers")}
+    names = ("material", *MATERIAL, "time_unit", "monomer_radius", "seed", "n_monomers")
+    kept = {name: attrs[name] for name in names}
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
     )
+
+
+def _has_state(run):
+    """Whether a run is one of `ratd.compress`, or of `stretch`, with records and the state at its end."""
+    return isinstance(run, xr.Dataset) and "state_monomer" in run and "law" in run.attrs and run.sizes["record"] > 0
 
 
 def _in_box(cluster, parts):

@@ -6,11 +6,10 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.particles import read_particles
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
@@ -43,12 +42,11 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
     runs stand in OUT.nc, a figure in OUT.png. After Ctrl-C the same command goes on.
     """
-    particles = read_particles(file, unit=unit)
+    particles, _ = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_stretched") if out is None else out
     settings = {"material": material, "unit": unit, "phi": phi, "strain_rate": strain_rate}
     settings |= {"axes": axes, "unload": unload}
     made_with = provenance(source_hash(modules=["ratd.experiments.compression.stretch"]), settings, [file])
-    particles.grain(material)  # says what is wrong before anything is begun
 
     def make(start, checkpoint, progress):
         grain = started(particles, material, start)

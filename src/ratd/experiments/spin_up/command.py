@@ -5,10 +5,9 @@ from pathlib import Path
 
 import click
 
-from ratd.aggregates.particles import read_particles
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -42,11 +41,10 @@ def command(file, material, unit, starts, out, epsilon):
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
     runs stand in OUT.nc, a figure in OUT.png, the first one in 3D in OUT.html. After Ctrl-C the same command goes on.
     """
-    particles = read_particles(file, unit=unit)
+    particles, _ = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_spin_up") if out is None else out
     settings = {"material": material, "unit": unit, "epsilon": epsilon}
     made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run"]), settings, [file])
-    particles.grain(material)  # says what is wrong before anything is begun
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()
