@@ -167,7 +167,10 @@ def test_more_starts_are_added_to_those_that_are_there_and_fewer_take_none_away(
     for starts, expected in ((2, [0, 1]), (3, [0, 1, 2]), (1, [0, 1, 2])):
         done = run("spin-up", chain, *FAST[:4], "--starts", starts)
         assert done.exit_code == 0 and begun == expected
-    assert "3 starts of 4 monomers" in done.stdout and f"{chain}: 4 spheres, radii 20.08 to 23.18 nm, 3 contacts" in done.stdout
+    assert (
+        "3 starts of 4 monomers" in done.stdout
+        and f"{chain}: 4 spheres, radii 20.08 to 23.18 nm, 3 contacts" in done.stdout
+    )
     assert not list(chain.parent.glob("*.partial"))
     made = [run_files.read_runs(chain.with_name(f"{name}.nc")) for name in ("chain_spin_up", "whole")]
     for own, other in zip(*made, strict=True):

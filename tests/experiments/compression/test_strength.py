@@ -156,7 +156,7 @@ def test_a_range_that_no_run_covers_has_no_strength():
     for low, high, said in (
         (0.03, 0.12, "no run covers the filling factors from 0.03 to 0.12"),
         (0.12, 0.6, "no run covers"),
-        (0.12, 0.122, "a power law needs 3 at least"),
+        (0.12, 0.125, "a power law needs 3 at least"),
         (0.3, 0.2, "the lower one first"),
         ("a", 0.2, "must be numbers above 0"),
     ):

@@ -27,6 +27,7 @@ from ratd.experiments.spin_up.radiation import (
     moment_of_inertia,
     omega_rat,
     radiative_torque,
+    spin_up_time,
     torque_efficiency,
 )
 from ratd.experiments.spin_up.size_law import SPLIT, unit_of
@@ -281,3 +282,15 @@ def test_figure_shows_ours_below_the_printed_law(table, tmp_path):
         inside = np.concatenate([ours, printed])
         assert np.nanmin(inside) >= 50 and np.nanmax(inside) <= 550
     save(figure, tmp_path / "radiation.png", tmp_path / "radiation.pdf")
+
+
+def test_light_turns_a_grain_within_the_time_that_all_drag_takes_to_stop_it():
+    """8.74e4 yr by gas alone (Hoang 2019: 0.1 um, 3 g cm-3); at U = 1 the infrared light takes 1.4 times that away."""
+    year = 3.156e7
+    times = [spin_up_time(1e-7, 3000.0, strength) / year for strength in (0.0, 1.0, 1000.0)]
+    assert times[0] == pytest.approx(8.74e4, rel=0.01)
+    assert times[0] / times[1] == pytest.approx(1.4) and times[0] / times[2] == pytest.approx(41.0)
+    # the angular velocity that it reaches is what the torque gives in this time
+    inertia = moment_of_inertia(1e-7, 3000.0)
+    reached = radiative_torque(1e-7, 1000.0) / inertia * times[2] * year
+    assert reached == pytest.approx(omega_rat(1e-7, 1000.0))

@@ -14,6 +14,7 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
+from ratd.base.units import NM
 from ratd.experiments.spin_up.findings import beside, claims, ensemble
 from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
 from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
@@ -204,15 +205,16 @@ def findings(data, fits):
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
     values |= beside.of_formulae(data.tables["formulae"])
     values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
-    values |= beside.composition_tables() | beside.of_heat()
+    values |= beside.composition_tables()
     values |= of_pulled(data.pulled, data.driven)
     printed = load(*CONFIGS).config["literal"]
-    values["p.acceleration"] = printed["angular_acceleration"]
+    values |= {"p.acceleration": printed["angular_acceleration"], "p.step": printed["timestep_factor"]}
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
     values |= beside.of_lammps(**data.lammps)
     values |= of_studies(data.studies) | of_literature(data.driven, data.grown)
     values |= of_exponents(data.fragments[DRIVEN])
     values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
+    values |= beside.of_heat(values["radiation.q-S BA 100 ours"].value * NM)
     if data.recomputed is not None:
         values |= beside.recomputed(data.printed, data.recomputed)
     values["cells.quarter"] = ensemble.cell_medians(data.driven)

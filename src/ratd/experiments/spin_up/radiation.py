@@ -29,6 +29,7 @@ __all__ = [
     "moment_of_inertia",
     "omega_rat",
     "radiative_torque",
+    "spin_up_time",
     "torque_efficiency",
 ]
 
@@ -148,6 +149,15 @@ def gas_damping_time(size, density, around=DIFFUSE, inertia_ratio=1.0):
     The printed 8.74e4 yr (0.1 um, 3 g cm-3, n_H = 30 cm-3, 100 K) is 1.003 times this.
     """
     return moment_of_inertia(size, density, inertia_ratio) / gas_drag(size, around, inertia_ratio)
+
+
+def spin_up_time(size, density, strength, around=DIFFUSE, inertia_ratio=1.0, coefficient=INFRARED):
+    """Time [s] in which light brings a grain near the angular velocity of `omega_rat`: I over all drag.
+
+    A grain that is torn long before it turns so fast takes less, by the part of this angular velocity.
+    """
+    gas = gas_damping_time(size, density, around, inertia_ratio)
+    return gas / (1.0 + infrared_damping(size, strength, around, inertia_ratio, coefficient))
 
 
 def infrared_damping(size, strength, around=DIFFUSE, inertia_ratio=1.0, coefficient=INFRARED):

@@ -15,6 +15,7 @@ from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import effect
 from ratd.experiments.spin_up.printed import PAIR_ERROR, VISCOUS_EFFECT
+from ratd.experiments.spin_up.radiation import spin_up_time
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
 from ratd.laws.contact_constants import equilibrium_contact_radius
@@ -28,6 +29,8 @@ __all__ = [
 
 PAIR_RADII = (10 * NM, 100 * NM)
 """The smallest and the largest monomers of Fig. 10."""
+YEAR = 3.156e7
+"""[s]"""
 PAIR_SHARE = 0.8 / 2.8
 """Share of their own moments of inertia, 2/5 m a^2 each, in that of two touching spheres, m a^2 each besides."""
 
@@ -141,10 +144,24 @@ def of_lammps(driven, default):
     return values
 
 
-def of_heat():
-    """What heat does to the contact of two equal q-S spheres: barriers, and what is left of the pull over an hour."""
-    values = {}
-    for row in thermal.table(materials=("q-S",)).to_dict("records"):
+def of_heat(size, strength=100.0):
+    """What heat does to the contact of two equal q-S spheres: barriers, and what is left of the pull over an hour.
+
+    Parameters
+    ----------
+    size : float
+        Of the smallest grain that light of a strength U tears [m]: the same for the time that this takes, ``thermal.
+        light``, beside an hour.
+    strength : float
+    """
+    time = spin_up_time(size, get_material("q-S").density, strength)
+    values = {"thermal.years": time / YEAR}
+    hour, light = (thermal.table(("q-S",), duration=duration) for duration in (thermal.HOUR, time))
+    for row in light.to_dict("records"):
+        start = f"thermal.light {row['law']} {row['radius'] / NM:.0f} nm"
+        values[f"{start} life"] = row["life_temperature"]
+        values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
+    for row in hour.to_dict("records"):
         start = f"thermal.{row['law']} {row['radius'] / NM:.0f} nm"
         values[f"{start} eV"] = row["barrier_eV"]
         values[f"{start} life"] = row["life_temperature"]

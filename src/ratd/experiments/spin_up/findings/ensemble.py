@@ -195,8 +195,13 @@ def what_contacts_hold(grown, firm, table):
     table = table.assign(size=size_key(table["a_eff"])).merge(firm, on=keys)
     above = grown["printed"] > grown["firm_bound"]
     load = (grown["printed"] / grown["firm_bound"]) ** 2
+    # what would bring the two nearer: stronger contacts, and the mean radius of the grains in the printed formula
+    stronger = math.sqrt(4.0 / 3.0) * grown["firm_bound"]
+    lower = grown["printed"] * np.sqrt(PAPER_MEAN_RADIUS / grown["mean_monomer_radius"])
     values = {
         "bound.grown": len(grown),
+        "bound.above both": int((lower > stronger).sum()),
+        "bound.over": float((grown["printed"] / grown["firm_bound"]).median()),
         "bound.above": int(above.sum()),
         "bound.largest below": float(grown.loc[~above, "nm"].max()),
         "bound.load": float(load.median()),
@@ -207,6 +212,7 @@ def what_contacts_hold(grown, firm, table):
     }
     beyond = table.loc[table["omega_first_loss"] > table["firm_bound"], "type"]
     values["bound.over firm"] = len(beyond)
+    values["bound.over firm most"] = float((table["omega_first_loss"] / table["firm_bound"]).max())
     values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond == kind).any())
     strength = strength_omega(table)
     for kind in TYPES:
