@@ -19,6 +19,7 @@ from ratd.experiments.spin_up.findings import beside, claims, ensemble
 from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
 from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
 from ratd.experiments.spin_up.findings.literature import of_literature
+from ratd.experiments.spin_up.findings.mark_rules import of_mark_rules
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
@@ -67,6 +68,8 @@ TABLE_COLUMNS = (
 )  # fmt: skip
 LAMMPS = {"driven": "validation/data/tables/lammps.csv", "default": "validation/data/tables/lammps_spin_up.csv"}
 """Spin-up of ratd beside LAMMPS -> table below docs, written with docs/validation.md."""
+MARK_RULES = "validation/data/mark_rules.nc"
+"""omega_disr by other rules, below docs, taken there by ``python -m ratd.validation.document collect``."""
 RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
@@ -96,6 +99,8 @@ class Data(NamedTuple):
         Grains that were pulled apart.
     lammps : dict of str to pandas.DataFrame
         Thresholds of both codes, from the validation, see `LAMMPS`.
+    mark_rules : pandas.DataFrame or None
+        omega_disr by other rules, from the validation, see `MARK_RULES`.
     studies : dict
         See `ratd.experiments.spin_up.findings.studies.studies`.
     """
@@ -112,6 +117,7 @@ class Data(NamedTuple):
     pairs: list
     pulled: pd.DataFrame
     lammps: dict
+    mark_rules: pd.DataFrame | None
     studies: dict
 
 
@@ -161,6 +167,7 @@ def read_data(data=DATA):
     grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
     files = spun_up_files(data / "spun_up" / DRIVEN)
     anew = data / "spun_up" / PRINTED
+    rules = data.parents[1] / MARK_RULES
     return Data(
         grown=ensemble.beside_print(grown),
         driven=ensemble.beside_print(spun_up_table(files, grown)),
@@ -177,6 +184,7 @@ def read_data(data=DATA):
         pulled=read_pulled(data / "pulled"),
         studies=studies(data, files, printed),
         lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
+        mark_rules=io.read(rules, "validation_mark_rules").to_dataframe() if rules.is_file() else None,
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
@@ -215,6 +223,8 @@ def findings(data, fits):
     values |= of_exponents(data.fragments[DRIVEN])
     values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
     values |= beside.of_heat(values["radiation.q-S BA 100 ours"].value * NM)
+    if data.mark_rules is not None:
+        values |= of_mark_rules(data.mark_rules)
     if data.recomputed is not None:
         values |= beside.recomputed(data.printed, data.recomputed)
     values["cells.quarter"] = ensemble.cell_medians(data.driven)
