@@ -112,6 +112,8 @@ class Grain:
         self.contacts, gap = _contacts(self.position, self.radius, self.material)
         _check_overlap(self.contacts, gap)
         _check_one_piece(self.position, self.radius, self.contacts)
+        if not (a_eff is None or is_number(a_eff)):
+            raise InputError(f"a_eff is {a_eff!r}; it must be a number in m, or None.")
         self.a_eff = self.effective_radius if a_eff is None else float(a_eff)
         if not abs(self.a_eff / self.effective_radius - 1.0) <= 1e-9:
             raise InputError(

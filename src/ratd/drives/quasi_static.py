@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
@@ -152,7 +153,7 @@ def quasi_static(name, *, omega_1, stretch=2e-14, pace=0.02, unrest=0.02, drag=1
     if name not in DRIVES:
         raise InputError(f"drive is {name!r}; allowed are {', '.join(DRIVES)}.")
     for word, value in (("pace", pace), ("unrest", unrest), ("stretch", stretch), ("drag", drag), ("omega_1", omega_1)):
-        if not (np.isfinite(value) and value > 0):
+        if not (is_number(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
     if drag <= LEAST_DRAG:
         raise InputError(

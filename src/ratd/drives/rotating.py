@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.parts import part
@@ -148,7 +149,7 @@ def rotating(name, *, omega_1, epsilon=None, angular_acceleration=None, coriolis
     if (epsilon is None) == (angular_acceleration is None):
         raise InputError("Exactly one of epsilon and angular_acceleration must say how fast the grain spins up.")
     for word, value in (("epsilon", epsilon), ("angular_acceleration", angular_acceleration)):
-        if value is not None and not (np.isfinite(value) and value > 0):
+        if value is not None and not (is_number(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
     literal = name == "literal"
     if coriolis is None:

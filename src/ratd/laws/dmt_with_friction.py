@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.fastmath import reciprocal, reciprocal_root, rough_reciprocal_root
 from ratd.base.jit import jit
@@ -463,6 +464,6 @@ def dmt(
         "twisting_limit": twisting_limit,
     }
     for name, value in numbers.items():
-        if not (np.isfinite(value) and value >= 0.0):
+        if not (is_number(value) and value >= 0.0):
             raise InputError(f"{name} is {value!r}; it must be a number of at least 0.")
     return DMT(friction=FRICTIONS.index(friction), **{name: float(value) for name, value in numbers.items()})

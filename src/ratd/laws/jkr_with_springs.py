@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.fastmath import reciprocal, reciprocal_root
 from ratd.base.jit import jit
@@ -488,7 +489,7 @@ def jkr(
         "twisting_stiffness": twisting_stiffness,
     }
     for name, value in numbers.items():
-        if not (np.isfinite(value) and value > 0.0 or value == 0.0 and name == "constant_damping"):
+        if not (is_number(value) and value > 0.0 or value == 0.0 and name == "constant_damping"):
             raise InputError(f"{name} is {value!r}; it must be a number above 0.")
     numbers = {name: float(value) for name, value in numbers.items()}
     return JKR(

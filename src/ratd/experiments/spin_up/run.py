@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.grain import Grain
+from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 from ratd.drives.largest import OMEGA, TORQUE_WORK
 from ratd.drives.rotating import OMEGA_RAT
@@ -318,9 +319,9 @@ class Run:
 def _check(grain, max_steps, records, snapshot_every):
     if not isinstance(grain, Grain):
         raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
-    if max_steps is not None and not max_steps >= 1:
-        raise InputError(f"max_steps is {max_steps!r}; it must be at least 1, or None for no limit.")
-    if not (records == int(records) and records >= 1):
+    if max_steps is not None and not (is_whole(max_steps) and max_steps >= 1):
+        raise InputError(f"max_steps is {max_steps!r}; it must be a whole number of at least 1, or None for no limit.")
+    if not (is_number(records) and records == int(records) and records >= 1):
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
-    if not (snapshot_every == int(snapshot_every) and snapshot_every >= 0):
+    if not (is_number(snapshot_every) and snapshot_every == int(snapshot_every) and snapshot_every >= 0):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
