@@ -272,7 +272,7 @@ def test_what_moves_the_size_for_one_material_and_strength(table):
 def test_figure_shows_ours_below_the_printed_law(table, tmp_path):
     figure = radiation(table, table)
     assert [axes.get_title() for axes in figure.axes] == ["a-C", "q-S", "co-S"]
-    assert "driven" in figure.get_suptitle()
+    assert "above a line" in figure.get_suptitle()
     for axes in figure.axes:
         drawn = [line for line in axes.lines if len(line.get_xdata()) > 2]
         assert len(drawn) == 3 * 2 * 2

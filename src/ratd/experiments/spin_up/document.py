@@ -251,7 +251,7 @@ def figures(data, fits):
     yield "pulled", pulled(data.pulled, data.driven)
     yield "figure1", figure1(data.grains)
     yield "figure2", figure2(data.grown)
-    yield "radiation", radiation(data.driven, data.grown, drive=DRIVEN)
+    yield "radiation", radiation(data.driven, data.grown)
     yield "figure9_prescribed", figure9(data.tables["parameters"])
     yield "figure10", figure10(pd.concat(data.pairs, ignore_index=True))
 

@@ -66,17 +66,17 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
             if len(found):
                 ends.append((kind, found["middle"].iloc[-1], look["color"]))
         drive = drive_of(table)
-        axes.set_title(f"{plural(int(table['ratio'].notna().sum()), 'grain')}, {drive_text(drive)}")
+        axes.set_title(f"{int(table['ratio'].notna().sum())} of {plural(len(table), 'grain')}, {drive_text(drive)}")
         axes.set_xlabel(sizes_label())
         axes.set_yscale("log")
         if firm is not None:
-            _bounds(axes, firm, prescribed if grown is None else grown, style, materials)
+            _bounds(axes, firm, prescribed if grown is None else grown, style, shifts, materials)
     logarithmic(panels[0].yaxis, labelled=(2, 5))
     panels[0].set_xlim(*nanometres(size_limits(every)))
     panels[0].set_ylabel("$\\omega$ over that of the paper\nfor the same grain")
     handles = [Line2D([], [], color="black", lw=0.8, label="the paper: Eq. 33 with Table 3")]
     if firm is not None:
-        handles.append(Line2D([], [], color="black", label="firm bound: the contacts can hold no more", **BOUND))
+        handles.append(Line2D([], [], color="black", label="firm bound of the grain as grown", **BOUND))
     if len(panels) == 1:
         label_ends(panels[0], ends)
     else:
@@ -96,12 +96,13 @@ def _title(mark):
     return f"angular velocity at which {words.get(mark, mark)}, over that of the paper"
 
 
-def _bounds(axes, firm, grains, style, materials):
-    """Median of the bound over Eq. 33 of each type and size, a line a type."""
+def _bounds(axes, firm, grains, style, shifts, materials):
+    """Median of the bound over Eq. 33 of each type and size, a line a type, where its markers stand."""
     keys = ["material", "type", "size", "seed"]
     bounds, grains = (table.assign(size=size_key(table["a_eff"])) for table in (firm, grains))
     known = grains.merge(bounds[[*keys, "firm_bound"]], on=keys, validate="one_to_one")
     known = known.assign(ratio=over_the_paper(known, "firm_bound", materials))
     for kind, look in style.items():
         median = known[known["type"] == kind].groupby("size")["ratio"].median()
-        axes.plot(median.index / 1000, median, color=look["color"], zorder=1, **BOUND)
+        sizes = median.index / 1000 + nanometres(shifts[kind])
+        axes.plot(sizes, median, color=look["color"], zorder=1, **BOUND)

@@ -6,11 +6,10 @@ from matplotlib.lines import Line2D
 from ratd.experiments.spin_up.radiation import DIFFUSE
 from ratd.experiments.spin_up.surviving import COMPUTED, is_extrapolated, surviving
 from ratd.experiments.spin_up.figures.style import type_style
-from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, empty, logarithmic, nanometres, new_figure, styled
 
 STRENGTHS = np.geomspace(0.1, 1e5, 121)
-SIZES = (40e-9, 1000e-9)
+SIZES = (40e-9, 700e-9)
 """Ends of the axis of sizes [m]."""
 LINES = {"ours": {"ls": "-", "lw": 1.6}, "printed": {"ls": (0, (4, 2)), "lw": 1.1}}
 """How the lines of a law look."""
@@ -20,7 +19,7 @@ _PALE = 0.5
 
 
 @styled
-def radiation(table, grown, mark="omega_mass_75", drive=None, around=DIFFUSE, materials=None):
+def radiation(table, grown, mark="omega_mass_75", around=DIFFUSE, materials=None):
     """Largest surviving grain against the strength of the radiation, a panel a material.
 
     Parameters
@@ -31,8 +30,6 @@ def radiation(table, grown, mark="omega_mass_75", drive=None, around=DIFFUSE, ma
         Grains as grown.
     mark : str
         omega of disruption of this work.
-    drive : str, optional
-        Named in the title; default: what the table says.
     around : ratd.experiments.spin_up.radiation.Surroundings
     materials : optional
         Table of materials, handed to `ratd.base.materials.get_material`.
@@ -44,11 +41,10 @@ def radiation(table, grown, mark="omega_mass_75", drive=None, around=DIFFUSE, ma
         as dashed lines, paler. Dotted where the size is none of those that were spun up, which the grey areas show.
         A line begins where the first size is destroyed.
     """
-    drive = drive_of(table) if drive is None else drive
     found = surviving(table, grown, STRENGTHS, mark, around=around, materials=materials, draws=200)
     names = list(dict.fromkeys(found["material"])) or [""]
     wide = len(names) > 1
-    title = f"Radiation destroys grains above a line ({drive_text(drive)})"
+    title = "Radiation destroys grains above a line"
     figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.48 * TWO_COLUMNS, title)
     panels = figure.subplots(1, len(names), sharex=True, sharey=True, squeeze=False)[0]
     style = type_style(found["type"])
