@@ -16,6 +16,18 @@ def test_slots_are_filled():
     assert slots(text) == ["a", "b", "b", "c", "d", "e", "n", "a"]
 
 
+def test_an_error_is_never_rounded_to_nothing():
+    values = {
+        "a": Measured(1.6988, 0.0003),
+        "b": Measured(0.0, 0.0),
+        "c": Measured(0.0133, 0.0002),
+        "d": Measured(3, 1e-9),
+    }
+    assert fill("{{a:.3f±}} {{a:.2f±}} {{b:.1%±}} {{c:.1%±}} {{d:.2f±}}", values) == (
+        "1.6988 ± 0.0003 1.6988 ± 0.0003 0 1.33% ± 0.02% 3.00 ± 0.00"
+    )
+
+
 def test_a_verdict_that_flips_is_an_error():
     assert fill("It {{line=holds}}.", {"line": "holds"}) == "It holds."
     with pytest.raises(InputError, match="the verdict line is 'fails', but the template says 'holds'"):

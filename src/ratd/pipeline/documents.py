@@ -1,7 +1,8 @@
 """Documents: a template that a person wrote, with slots for numbers.
 
 A slot is ``{{name}}``, ``{{name:.2f}}`` with a format of Python, or ``{{name:.2f±}}`` for a number with its standard
-error. ``{{name:.1%}}`` works too, and ``{{name:.2e}}`` becomes 1.23·10⁻⁶. ``{{name | words}}`` has words that stand
+error, with a digit or two more where the error would else be 0. ``{{name:.1%}}`` works too, and ``{{name:.2e}}``
+becomes 1.23·10⁻⁶. ``{{name | words}}`` has words that stand
 there as long as there is no value; every other slot must have one. A *verdict* is ``{{name=holds}}``: it prints the
 word, and is an error when the data give another one. Then a person has to read the sentence again.
 
@@ -100,8 +101,21 @@ def _filled(values, where, name, sign, form):
         raise InputError(f"the value of {name} is {value}, no finite number")
     if not form.endswith("±"):
         return _number(value, form)
-    text = _number(value, form[:-1])
-    return f"{text} ± {_number(error, form[:-1])}" if math.isfinite(error) else text
+    form = form[:-1]
+    if not math.isfinite(error) or error == 0.0:
+        return _number(value, form)
+    form = _fine_enough(error, form)
+    return f"{_number(value, form)} ± {_number(error, form)}"
+
+
+def _fine_enough(error, form):
+    """A format with up to two digits more, where those of the template make an error 0 that is not."""
+    digits = re.fullmatch(r"\.(\d+)([f%])", form)
+    if digits is None:
+        return form
+    first, kind = int(digits[1]), digits[2]
+    forms = [f".{first + more}{kind}" for more in range(3)]
+    return next((each for each in forms if float(format(error, each).rstrip("%")) > 0.0), form)
 
 
 def _number(value, form):
