@@ -188,7 +188,6 @@ def test_wrong_mixtures_are_refused(fractions, message):
         ({"youngs_modulus": 50}, "it is in Pa, and no solid has one below 10000"),
         ({"density": 2.0}, "it is in kg/m3"),
         ({"surface_energy": 20.0}, "it is in J/m2"),
-        ({"critical_rolling_displacement": 0.2}, "it is in m"),
     ],
 )
 def test_wrong_materials_are_refused(changes, message):

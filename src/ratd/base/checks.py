@@ -8,8 +8,8 @@ from ratd.base.errors import InputError
 
 __all__ = ["GREATEST_SEED", "check_radii", "far_apart", "is_number", "is_whole", "number_array"]
 
-SMALLEST_RADIUS, LARGEST_RADIUS = 1e-9, 1e-3
-"""Radii of monomers [m], from a hundred atoms to a grain of sand: what lies outside was given in another unit."""
+SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
+"""Radii of monomers [m], from an atom to a grain of sand: what lies outside was given in another unit."""
 FAR = 1e4
 """Spheres that lie apart by more than this many times the length of all of them in a row do not belong together."""
 _UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3}
