@@ -96,7 +96,7 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         raise FileError(
             f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0{which}"
         )
-    if None not in (unit, stated) and _factor(unit) != _factor(stated):
+    if None not in (unit, stated) and unit != stated:
         raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
     unit = unit or stated or "nm"
     factor = _factor(unit)
@@ -129,8 +129,9 @@ def _read_table(path, frame):
     separator = "," if path.suffix == ".csv" else r"\s+"
     # some programs begin a file with a mark of its encoding
     lines = path.read_text(encoding="utf-8-sig").splitlines()
-    if lines and _names_columns(lines[0].lstrip("# "), separator):
-        lines[0] = lines[0].lstrip("# ")
+    header = lines[0].lstrip("# ") if lines else ""
+    if _names_columns(header, separator):
+        lines[0] = header
     lines = [line.partition("#")[0].strip() for line in lines]
     lines = [line for line in lines if line] or [""]
     words = _words(lines[0], separator)

@@ -75,7 +75,7 @@ def _stem(context, parameter, value):
 
 
 def aggregate(path, unit, material):
-    """Spheres of a file that hang together, of which the number and the radii are said.
+    """The aggregate of a file, of which the number of spheres and their radii are said.
 
     Parameters
     ----------
@@ -85,8 +85,7 @@ def aggregate(path, unit, material):
 
     Returns
     -------
-    ratd.Particles
-    grain : ratd.Grain
+    Grain
 
     Raises
     ------
@@ -101,7 +100,7 @@ def aggregate(path, unit, material):
     least, most = (f"{extreme / NM:.4g}" for extreme in (grain.radius.min(), grain.radius.max()))
     radii = f"radius {least}" if least == most else f"radii {least} to {most}"
     click.echo(f"{path}: {plural(grain.n_monomers, 'sphere')}, {radii} nm, {plural(grain.n_contacts, 'contact')}")
-    return particles, grain
+    return grain
 
 
 def moved(position, start):
@@ -125,20 +124,20 @@ def moved(position, start):
     return position + SHIFT * direction / np.linalg.norm(direction, axis=1, keepdims=True)
 
 
-def started(particles, material, start):
+def started(grain, start):
     """The aggregate of one of several starts, see `moved`.
 
     Parameters
     ----------
-    particles : ratd.Particles
-    material : str
+    grain : Grain
+        As it stands in the file.
     start : int
 
     Returns
     -------
     Grain
     """
-    return Grain(moved(particles.position, start), particles.radius, material, type="aggregate", seed=start)
+    return Grain(moved(grain.position, start), grain.radius, grain.material, type="aggregate", seed=start)
 
 
 def several(target, kind, material, provenance, starts, make):
@@ -169,7 +168,11 @@ def several(target, kind, material, provenance, starts, make):
     there = _starts_there(block, kind) if block.target.exists() else 0
     if there >= starts:
         return
-    _check_unfinished(block, kind)
+    if block.others(kind):
+        raise InputError(
+            f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
+            "finish them with their own command, remove the folder, or give another --out."
+        )
     try:
         with locked(block.folder / "lock", logging.getLogger(__name__)):
             if there:
@@ -202,19 +205,6 @@ def _starts_there(block, kind):
             "give another --out."
         )
     return len(rows(found, kind))
-
-
-def _check_unfinished(block, kind):
-    """InputError where runs of other settings have been begun, which this command would remove."""
-    own = {block.checkpoint(seed).name.split(".")[1] for seed in block.seeds}
-    others = [path for path in block.folder.glob("seed_*.checkpoint") if path.name.split(".")[1] not in own]
-    pieces = block.folder.glob("seed_*.nc")
-    others += [path for path in pieces if io.read_made_with(path, kind, block.provenance) is None]
-    if others:
-        raise InputError(
-            f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
-            "finish them with their own command, remove the folder, or give another --out."
-        )
 
 
 class progress_bar:

@@ -62,6 +62,13 @@ class Block:
         """Below this path a grain may keep what it needs to go on in its middle."""
         return self.folder / f"seed_{seed}.{settings_hash(self.provenance)}.checkpoint"
 
+    def others(self, kind):
+        """Pieces and checkpoints in the folder that were made with another provenance, list of Path."""
+        own = self.checkpoint(0).name.removeprefix("seed_0")
+        begun = [path for path in self.folder.glob("seed_*.checkpoint") if not path.name.endswith(own)]
+        pieces = self.folder.glob("seed_*.nc")
+        return begun + [path for path in pieces if io.read_made_with(path, kind, self.provenance) is None]
+
 
 class Pieces:
     """The finished grains of one block: the latest in memory, those before in pieces.
@@ -145,12 +152,14 @@ def locked(path, log):
         Told when there is something to wait for.
     """
     path = Path(path)
-    for left in range(TRIES, -1, -1):
+    tries = 0
+    while True:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle = open(path, "a")
         except FileNotFoundError as error:
-            if left and path.parent.parent.is_dir():  # `tidy` removed the folder at this moment
+            tries += 1
+            if tries < TRIES and path.parent.parent.is_dir():  # `tidy` removed the folder at this moment
                 continue
             raise FileError(f"{path}: cannot be written ({error.strerror})") from error
         except OSError as error:

@@ -53,7 +53,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     if velocity * duration < 2.0 * GAP:
         raise InputError(too_short(velocity, duration))
     files = [file] if other is None else [file, other]
-    grains = [aggregate(path, unit, material)[1] for path in files]
+    grains = [aggregate(path, unit, material) for path in files]
     out = file.with_name(f"{file.stem}_collided") if out is None else out
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
     source = source_hash(modules=["ratd.experiments.collision.run"])

@@ -104,16 +104,8 @@ def slower_than_sound_from(rate, n, monomer_radius, density, rolling_pressure, p
 
     Parameters
     ----------
-    rate : float
-        H [1/s].
-    n : int
-        Number of monomers.
-    monomer_radius : float
-        r_0 [m].
-    density : float
-        rho_0 [kg m-3] of the solid.
-    rolling_pressure : float
-        P_0 [Pa].
+    rate, n, monomer_radius, density, rolling_pressure
+        As of `static_from`.
     part : float
         Of the speed of sound.
 

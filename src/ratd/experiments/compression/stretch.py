@@ -81,8 +81,7 @@ def stretch(
     xarray.Dataset
         As of `ratd.compress`, without snapshots. ``tension`` is -P_xx, or -P where all axes are pulled. The attributes
         hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, 0 where there is no tension,
-        ``phi_strength``, where that is,
-        ``phi_start`` and ``residual_pressure`` [Pa], what the aggregate at rest presses with.
+        ``phi_strength``, where that is, ``phi_start``, and ``residual_pressure`` [Pa], what it presses with at rest.
 
     Raises
     ------

@@ -42,14 +42,14 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
     runs stand in OUT.nc, a figure in OUT.png. After Ctrl-C the same command goes on.
     """
-    particles, _ = aggregate(file, unit, material)
+    given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_stretched") if out is None else out
     settings = {"material": material, "unit": unit, "phi": phi, "strain_rate": strain_rate}
     settings |= {"axes": axes, "unload": unload}
     made_with = provenance(source_hash(modules=["ratd.experiments.compression.stretch"]), settings, [file])
 
     def make(start, checkpoint, progress):
-        grain = started(particles, material, start)
+        grain = started(given, start)
 
         def told(half):
             begun = time.monotonic()

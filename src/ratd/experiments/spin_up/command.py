@@ -41,14 +41,14 @@ def command(file, material, unit, starts, out, epsilon):
     The answer is the mean over several starts, whose monomers are moved by 1e-12 m, with their standard deviation. The
     runs stand in OUT.nc, a figure in OUT.png, the first one in 3D in OUT.html. After Ctrl-C the same command goes on.
     """
-    particles, _ = aggregate(file, unit, material)
+    given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_spin_up") if out is None else out
     settings = {"material": material, "unit": unit, "epsilon": epsilon}
     made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run"]), settings, [file])
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()
-        grain = started(particles, material, start)
+        grain = started(given, start)
         return run_row(
             spin_up(
                 grain,

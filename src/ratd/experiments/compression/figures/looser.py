@@ -51,22 +51,18 @@ def looser(tables):
 def _smooth(table):
     """Filling factors, and the mean over seeds of P/(P_0 phi^3) with its error, of `SMOOTH` bins each."""
     phi = table["phi"].values
-    smooth = table.copy()
-    near = np.lib.stride_tricks.sliding_window_view(table["pressure"].values, SMOOTH, axis=1).mean(axis=-1)
-    middle = phi[SMOOTH // 2 : len(phi) - SMOOTH // 2]
-    smooth = smooth.isel(phi_bin=slice(SMOOTH // 2, len(phi) - SMOOTH // 2))
-    smooth["pressure"] = (table["pressure"].dims, near)
-    line = table["rolling_pressure"].values[0] * middle**3
-    mean, error = (part / line for part in mean_pressure(smooth))
+    near = table["pressure"].rolling(phi_bin=SMOOTH, center=True).mean()
+    line = table["rolling_pressure"].values[0] * phi**3
+    mean, error = (part / line for part in mean_pressure(table.assign(pressure=near)))
     there = np.isfinite(mean)
-    return middle[there], (mean[there], np.nan_to_num(error[there]))
+    return phi[there], (mean[there], np.nan_to_num(error[there]))
 
 
 def _mark(table):
     """Filling factor from which on the faces of the box move at less than `MACH` times the speed of sound."""
     rate = box_rate(table["strain_rate"].values[0], table["time_unit"].item())
-    of_ice = (table["monomer_radius"].item(), table["density"].item(), table["rolling_pressure"].values[0])
-    return slower_than_sound_from(rate, table["n_monomers"].item(), *of_ice, MACH)
+    of_cluster = (table["monomer_radius"].item(), table["density"].item(), table["rolling_pressure"].values[0])
+    return slower_than_sound_from(rate, table["n_monomers"].item(), *of_cluster, MACH)
 
 
 def draw(files, settings):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pandas as pd
+from scipy.constants import Julian_year
 
 from ratd.base.materials import get_material
 from ratd.base.units import NM
@@ -29,8 +30,6 @@ __all__ = [
 
 PAIR_RADII = (10 * NM, 100 * NM)
 """The smallest and the largest monomers of Fig. 10."""
-YEAR = 3.156e7
-"""[s]"""
 PAIR_SHARE = 0.8 / 2.8
 """Share of their own moments of inertia, 2/5 m a^2 each, in that of two touching spheres, m a^2 each besides."""
 
@@ -155,18 +154,14 @@ def of_heat(size, strength=100.0):
     strength : float
     """
     time = spin_up_time(size, get_material("q-S").density, strength)
-    values = {"thermal.years": time / YEAR}
-    hour, light = (thermal.table(("q-S",), duration=duration) for duration in (thermal.HOUR, time))
-    for row in light.to_dict("records"):
-        start = f"thermal.light {row['law']} {row['radius'] / NM:.0f} nm"
-        values[f"{start} life"] = row["life_temperature"]
-        values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
-    for row in hour.to_dict("records"):
-        start = f"thermal.{row['law']} {row['radius'] / NM:.0f} nm"
-        values[f"{start} eV"] = row["barrier_eV"]
-        values[f"{start} life"] = row["life_temperature"]
-        values[f"{start} kT {row['temperature']:.0f} K"] = row["barrier_kT"]
-        values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
+    values = {"thermal.years": time / Julian_year}
+    for word, duration in (("", thermal.HOUR), ("light ", time)):
+        for row in thermal.table(("q-S",), duration=duration).to_dict("records"):
+            start = f"thermal.{word}{row['law']} {row['radius'] / NM:.0f} nm"
+            values[f"{start} eV"] = row["barrier_eV"]
+            values[f"{start} life"] = row["life_temperature"]
+            values[f"{start} kT {row['temperature']:.0f} K"] = row["barrier_kT"]
+            values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
     return values
 
 
