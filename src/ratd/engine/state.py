@@ -64,6 +64,14 @@ class State(NamedTuple):
     material: np.ndarray
 
 
+FIELD_TYPES = {
+    **dict.fromkeys(State._fields, "f8"),
+    **dict.fromkeys(("identity", "fragment", "kind", "counter"), "i8"),
+    **dict.fromkeys(("pair_i", "pair_j"), "u8"),
+}
+"""Array of a state -> its type."""
+
+
 def new_state(position, radius, materials, contacts, law, box, integrator, *, velocity=None, spin=None, kind=None):
     """State of spheres of which some pairs are in contact from the start.
 

@@ -5,10 +5,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ratd.engine.state import State
+from ratd.engine.state import FIELD_TYPES, State
 from ratd.experiments.compression.files import REFERENCE, read_cluster
 from ratd.experiments.compression.squeeze import law_of, squeezed, told
-from ratd.experiments.compression.strain import FIELD_TYPES
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline import io
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
@@ -23,7 +22,7 @@ def _state_variables():
     found = {}
     for name in State._fields:
         dims = tuple(f"{name}_{axis}" for axis in range(1 + (name in TWO_AXES)))
-        dtype = FIELD_TYPES.get(name, "f8")
+        dtype = FIELD_TYPES[name]
         meaning = f"{name} of the state, numbers in SI units as ratd.engine.state.State lays them out"
         found[f"state_{name}"] = Variable(dims, dtype, "1", meaning, nan=dtype == "f8")
     return found

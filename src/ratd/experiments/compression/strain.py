@@ -11,7 +11,7 @@ from ratd.engine import checkpoint as checkpoints
 from ratd.engine.hand_over import hand_over
 from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
 from ratd.engine.semi_implicit import SemiImplicit
-from ratd.engine.state import State, monomer_rows
+from ratd.engine.state import FIELD_TYPES, State, monomer_rows
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
@@ -49,11 +49,6 @@ def columns():
 
 
 COLUMNS = columns()
-FIELD_TYPES = {
-    **dict.fromkeys(("identity", "fragment", "kind", "counter"), "i8"),
-    **dict.fromkeys(("pair_i", "pair_j"), "u8"),
-}
-"""Array of a state -> its type; all others hold floating-point numbers."""
 
 
 class Parts(NamedTuple):
@@ -217,4 +212,4 @@ def strain_dataset(state, rows, parts):
 
 def state_of(run):
     """The state at the end of a run, from the dataset of `strain_dataset`, also from a file that kept other types."""
-    return State(**{name: run[f"state_{name}"].values.astype(FIELD_TYPES.get(name, "f8")) for name in State._fields})
+    return State(**{name: run[f"state_{name}"].values.astype(FIELD_TYPES[name]) for name in State._fields})

@@ -160,7 +160,36 @@ def pressures(tables, labels, title, *, alone=False):
     """The figure of mean pressures of some sets that share P_0."""
     figure, above, below = two_panels(title)
     draw_curves(above, below, tables, labels, alone=alone)
-    draw_line(above, tables[0])
-    # little of what is not static: there inertia is seen, and chance
-    above.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))
+    _line_and_left_end(above, tables)
     return finish(figure, above, below)
+
+
+def pressures_over(tables, labels, title, which, quotient, limits):
+    """The figure of mean pressures of sets of the same clusters, and below over those of one of them.
+
+    The curves above cover each other: what tells them apart is below.
+
+    Parameters
+    ----------
+    tables : list of xarray.Dataset
+    labels : list of str
+    title : str
+    which : int
+        Which of them the others are divided by.
+    quotient : str
+        Label of the axis below.
+    limits : (float, float)
+        Of the axis below.
+    """
+    figure, above, below = two_panels(title)
+    draw_curves(above, None, tables, labels)
+    _line_and_left_end(above, tables)
+    draw_over(below, tables, which, quotient)
+    below.set_ylim(*limits)
+    return finish(figure, above)
+
+
+def _line_and_left_end(axes, tables):
+    draw_line(axes, tables[0])
+    # little of what is not static: there inertia is seen, and chance
+    axes.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))

@@ -2,9 +2,7 @@
 
 import re
 
-from ratd.experiments.compression.figures.common import (
-    draw_curves, draw_line, draw_over, finish, read_sets, seeds_text, strain_text, two_panels,
-)  # fmt: skip
+from ratd.experiments.compression.figures.common import pressures_over, read_sets, seeds_text, strain_text
 from ratd.pictures.style import styled
 
 
@@ -23,14 +21,8 @@ def fewer_steps(tables):
         name = "explicit" if longest is None else rf"at most {longest:.0f} $t_0$"
         labels.append(f"{name}, {float(table['steps'].mean()) / 1e3:,.0f} thousand steps")
     about = f"{tables[0].attrs['material']}, {seeds_text(tables[0])}, {strain_text(tables[0])}"
-    figure, above, below = two_panels(about)
-    draw_curves(above, None, tables, labels)
-    draw_line(above, tables[0])
-    above.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))
     explicit = next((k for k, table in enumerate(tables) if longest_step(table) is None), 0)
-    draw_over(below, tables, explicit, r"$P\,/\,P$(explicit)")
-    below.set_ylim(0.4, 1.4)
-    return finish(figure, above)
+    return pressures_over(tables, labels, about, explicit, r"$P\,/\,P$(explicit)", (0.4, 1.4))
 
 
 def draw(files, settings):
