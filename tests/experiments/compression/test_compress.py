@@ -6,7 +6,11 @@ import xarray as xr
 
 import ratd
 from ratd.aggregates.strength import rolling_pressure, sound_speed_kataoka2013
+from ratd.base.materials import MATERIALS
 from ratd.experiments import intervals
+from ratd.experiments.command import several
+from ratd.experiments.compression import pull
+from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.pull import pressed, pulled
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.static import (
@@ -18,7 +22,9 @@ from ratd.experiments.compression.static import (
     time_unit,
 )
 from ratd.experiments.compression.strain import strain_dataset
+from ratd.experiments.compression.stretch_command import show
 from ratd.pipeline import io
+from ratd.pipeline.provenance import provenance
 
 HOW = {"strain_rate": 3e-5, "until_phi": 0.25}
 
@@ -267,6 +273,19 @@ def test_a_dense_cluster_that_still_presses_on_its_box_is_pulled_until_it_parts(
     # a pull goes on from another one
     again = ratd.stretch(pulled, 1e-4)
     assert again.attrs["phi_start"] == pytest.approx(pulled["phi"].values[-1])
+
+
+def test_a_pull_without_tension_is_a_row_of_its_files(run, tmp_path, monkeypatch):
+    """It has a strength of 0, and no filling factor where it is."""
+    loose = ratd.stretch(run, 3e-5).assign_attrs(tensile_strength=0.0, phi_strength=np.nan)
+    monkeypatch.setattr(pull, "stretch", lambda *_, **__: loose)
+    settings = {"k_n": 0.01, "timestep_factor": 0.14, "pull": {"strain_rate": 3e-5, "axes": "x", "unload": False}}
+    io.write(tmp_path / "entry.nc", pulled(pressed(run), settings), "tension_set")
+    assert np.isnan(io.read(tmp_path / "entry.nc", "tension_set")["phi_strength"].item())
+    made_with = provenance("code", settings)
+    several(tmp_path / "a.nc", "stretched", MATERIALS["ice"], made_with, 1, lambda *_: stretched_row(loose))
+    said = show(tmp_path / "a.nc", tmp_path / "a")
+    assert "tensile strength = 0 Pa" in said[1] and said[2] == "phi at the greatest tension: unknown, no start shows it"
 
 
 def test_a_pull_goes_on_from_a_file_of_whole_numbers_of_half_the_length(run, tmp_path):

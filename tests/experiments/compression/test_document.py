@@ -142,6 +142,18 @@ def test_pulls_of_other_sorts_are_told_apart():
     assert not any(name.endswith("over_0.2") for name in found)
 
 
+def test_pulls_without_tension_count_in_means_alone():
+    entries = [pulls([0.0, 20.0]), pulls([20.0, 40.0], phi=0.2), pulls([0.0, 0.0], phi=0.4)]
+    table = xr.concat(entries, "entry")
+    table["phi_strength"] = table["phi_strength"].where(table["strength"] > 0.0)
+    found = of_tension(table)
+    assert found["tension_x.0.1"].value == pytest.approx(10.0 / (0.951 * 0.1 / 1e-7 * 0.1**1.8))
+    assert [found[f"tension_x.held_{phi}"] for phi in (0.1, 0.2, 0.4)] == [1, 2, 0]
+    assert found["tension_x.peak_0.1"].value == 0.5
+    assert np.isnan(found["tension_x.peak_0.4"].value) and np.isnan(found["tension_x.residual_0.4"].value)
+    assert found["tension_x.exponent"].value == pytest.approx(np.log2(np.sqrt(20 * 40) / 20))
+
+
 def test_tables_of_other_sets_are_not_joined():
     one, other = (io.read(document.DATA / f"sets/{name}.nc", "compression_set") for name in ("n_1024", "rate_1e-6"))
     with pytest.raises(ratd.InputError, match="they differ in .*strain_rate"):

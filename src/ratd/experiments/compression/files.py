@@ -35,8 +35,8 @@ RUN = {
 PULL = {
     **{name: RUN[name] for name in ("monomer_radius", "time_unit", "strain_rate")},
     "phi_start": ("1", "filling factor at which the pulling began"),
-    "tensile_strength": ("Pa", "greatest tension"),
-    "phi_strength": ("1", "filling factor there"),
+    "tensile_strength": ("Pa", "greatest tension, 0 where there is none"),
+    "phi_strength": ("1", "filling factor there, nan where there is no tension"),
     "residual_pressure": ("Pa", "pressure left at rest before the pulling"),
 }
 register(
@@ -104,6 +104,7 @@ register(
             **row_sizes(("record",)),
             **over((ROW,), {"n_monomers": ("1", "number of monomers"), "steps": ("1", "number of steps")}, dtype="i8"),
             **over((ROW,), PULL),
+            **over((ROW,), {"phi_strength": PULL["phi_strength"]}, nan=True),
             **_record_variables(),
             **over(("record",), {"tension": ("Pa", "tension along the pulled axes")}),
         },

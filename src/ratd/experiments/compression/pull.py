@@ -52,13 +52,13 @@ register(
                     "phi_compressed": ("1", "filling factor at which the compression ended"),
                     "phi": ("1", "filling factor at which the pulling began"),
                     "strain_rate": ("1", "rate of the pulling in units of the compression: H t_0/2"),
-                    "strength": ("Pa", "greatest tension"),
-                    "phi_strength": ("1", "filling factor there"),
+                    "strength": ("Pa", "greatest tension, 0 where there is none"),
                     "residual": ("Pa", "pressure left at rest before the pulling"),
                     "surface_energy": ("J m-2", "gamma"),
                     "monomer_radius": ("m", "r_0"),
                 },
             ),
+            **over(("entry",), {"phi_strength": ("1", "filling factor there, nan where there is no tension")}, nan=True),
             **over(
                 ("entry",),
                 {

@@ -66,12 +66,14 @@ def of_tension(entries):
     for way, own in ways.items():
         for each in np.unique(phi[own]):
             here = own & (phi == each)
-            pressed = entries["residual"].values[here] / entries["strength"].values[here].mean()
+            held = here & (strength > 0.0)
+            mean = entries["strength"].values[here].mean()
+            pressed = entries["residual"].values[here] / (mean if mean > 0.0 else np.nan)
             found |= {
                 f"tension_{way}.{each:g}": Measured(*mean_of((strength / formula)[here])),
-                f"tension_{way}.peak_{each:g}": Measured(*mean_of(peak[here])),
+                f"tension_{way}.peak_{each:g}": Measured(*mean_of(peak[held])),
                 f"tension_{way}.n_{each:g}": int(here.sum()),
-                f"tension_{way}.held_{each:g}": int((strength[here] > 0.0).sum()),
+                f"tension_{way}.held_{each:g}": int(held.sum()),
                 f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
             }
             beside = main & (phi == each)
@@ -79,7 +81,7 @@ def of_tension(entries):
                 found[f"tension_{way}.over_{each:g}"] = _over(
                     strength, seed, here, beside, same=not way.startswith("N")
                 )
-    fitted = main & (phi >= TENSION_FROM)
+    fitted = main & (phi >= TENSION_FROM) & (strength > 0.0)
     if len(np.unique(phi[fitted])) > 1:
         found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])
     return found
