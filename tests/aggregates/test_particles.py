@@ -34,7 +34,8 @@ def snapshots(n=3):
 def test_a_grain_comes_back(tmp_path, grain, suffix, unit):
     path = tmp_path / f"grain.{suffix}"
     ratd.write_particles(grain, path, unit=unit)
-    back = ratd.read_particles(path, unit=unit)
+    # the file says its unit
+    back = ratd.read_particles(path)
     np.testing.assert_allclose(back.position, grain.position, rtol=1e-10, atol=1e-20)
     np.testing.assert_allclose(back.radius, grain.radius, rtol=1e-10)
     assert back.box is None and back.grain("q-S", seed=3).n_contacts == grain.n_contacts
@@ -94,6 +95,17 @@ def test_files_as_others_write_them(tmp_path, name, text):
             ".it has no radii; its second line must be",
         ),
         ("a.xyz", '1\nProperties=pos:R:3:r:R:1 Lattice="9 1 0 0 9 0 0 0 9"\n0 0 0 2\n', "the box is not rectangular"),
+        (
+            "a.xyz",
+            '1\nProperties=pos:R:3:r:R:1 Lattice="9 0 0 0 9 0 0 0 9" pbc="T T F"\n0 0 0 2\n',
+            "only, T T F;",
+        ),
+        (
+            "a.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp ff pp\n0 1\n0 1\n0 1\n"
+            "ITEM: ATOMS id x y z radius\n1 0 0 0 100\n",
+            "the box is periodic along some axes only, pp ff pp; allowed: all of them, or none",
+        ),
         ("a.xyz", "-2\n\n", "a frame begins with '-2'; allowed: the number of its spheres"),
         ("a.xyz", "1\nProperties=pos:R:3:r:R:1 unit=pc\n0 0 0 2\n", "its unit is 'pc'; allowed: m, cm"),
         ("a.txt", "1 0 0 0 20\n", "it has 5 columns; more than x y z r need their names"),
@@ -125,6 +137,8 @@ def test_wrong_arguments(tmp_path, grain):
         read_particles(tmp_path / "a.txt", unit="m")
     with pytest.raises(InputError, match="unit is 'pc'; allowed: m, cm"):
         read_particles(tmp_path / "a.txt", unit="pc")
+    with pytest.raises(InputError, match="LAMMPS has no units with mm; allowed: m, cm, um, nm, angstrom"):
+        write_particles(grain, tmp_path / "a.dump", unit="mm")
     with pytest.raises(InputError, match=r"has the suffix '.pdf'; allowed: .csv, .txt"):
         write_particles(grain, tmp_path / "a.pdf")
     with pytest.raises(FileError, match="b.txt: cannot be read"):

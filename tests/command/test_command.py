@@ -13,6 +13,7 @@ import ratd
 from files import grains_file, make_grain
 from ratd.aggregates.particles import write_particles
 from ratd.command import COMMANDS, SHOWN, main
+from ratd.experiments import command as commands
 from ratd.experiments.collision.figures.snapshots import origin_of, positions
 from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.compression.command import pressure_at
@@ -175,6 +176,26 @@ def test_more_starts_are_added_to_those_that_are_there_and_fewer_take_none_away(
     made = [run_files.read_runs(chain.with_name(f"{name}.nc")) for name in ("chain_spin_up", "whole")]
     for own, other in zip(*made, strict=True):
         assert own.equals(other)
+
+
+def test_a_command_that_waited_for_the_same_one_makes_nothing_anew(chain, monkeypatch):
+    """The other one ends between the look at the file and the lock."""
+    begun = []
+
+    def counted(grain, **how):
+        begun.append(grain.seed)
+        return ratd.spin_up(grain, **how)
+
+    def waited(*arguments):
+        monkeypatch.setattr(commands, "locked", lock)
+        assert run("spin-up", chain, *FAST).exit_code == 0
+        return lock(*arguments)
+
+    lock = commands.locked
+    monkeypatch.setattr(command, "spin_up", counted)
+    monkeypatch.setattr(commands, "locked", waited)
+    assert run("spin-up", chain, *FAST).exit_code == 0 and begun == [0, 1, 2]
+    assert not list(chain.parent.glob("*.partial"))
 
 
 def test_unfinished_runs_of_other_settings_are_not_removed(chain, monkeypatch):

@@ -3,6 +3,7 @@
 import re
 import shlex
 from io import StringIO
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,8 @@ __all__ = ["Particles", "read_particles", "write_particles"]
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
 """Units of length in files, in m."""
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
+_STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
+"""Unit of length -> style of units in LAMMPS, which its dumps may name."""
 _UNIT = re.compile(r"[\s\[(_]([a-z]+)")
 _TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
 _XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
@@ -202,13 +205,21 @@ def _read_xyz(path, frame):
             else [f"{name}_{k}" for k in range(int(width))]
         )
     table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
-    periodic = about.get("pbc", "T T T" if "Lattice" in about else "").split()
+    periodic = _periodic(about.get("pbc", "T T T" if "Lattice" in about else "F F F").split(), "T", "True", "true", "1")
     stated = about.get("unit")
     if stated is not None and stated not in UNITS:
         raise ValueError(f"its unit is {stated!r}; allowed: {', '.join(UNITS)}")
-    if "Lattice" not in about or "T" not in periodic:
+    if "Lattice" not in about or not periodic:
         return table, None, stated
     return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3)), stated
+
+
+def _periodic(sides, *words):
+    """Whether the edges of a box, as words of a file, are periodic, which these words mean."""
+    found = {side in words for side in sides}
+    if len(found) > 1:
+        raise ValueError(f"the box is periodic along some axes only, {' '.join(sides)}; allowed: all of them, or none")
+    return found == {True}
 
 
 def _diagonal(lattice):
@@ -220,6 +231,9 @@ def _diagonal(lattice):
 def _read_dump(path, frame):
     """One step of a text dump of LAMMPS."""
     lines = path.read_text(encoding="utf-8").splitlines()
+    # said once, before the first frame
+    style = next((after for line, after in pairwise(lines) if line.startswith("ITEM: UNITS")), None)
+    stated = next((unit for unit, name in _STYLES.items() if name == style), None)
 
     def length(lines):
         return section(lines, "ITEM: ATOMS") + 1 + int(lines[section(lines, "ITEM: NUMBER OF ATOMS") + 1])
@@ -240,7 +254,8 @@ def _read_dump(path, frame):
     table = pd.read_csv(body, sep=r"\s+", header=None, names=[_COLUMNS.get(name, name) for name in names])
     if "id" in table:
         table = table.sort_values("id", ignore_index=True)
-    return table, bounds[:, 1] - bounds[:, 0] if "p" in lines[at].split("BOUNDS")[1] else None, None
+    periodic = _periodic(lines[at].split("BOUNDS")[1].split(), "pp")
+    return table, bounds[:, 1] - bounds[:, 0] if periodic else None, stated
 
 
 def write_particles(content, path: str | Path, unit: str = "nm") -> None:
@@ -257,6 +272,8 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
 
     Notes
     -----
+    A unit other than nm is stated in the file: in the names of the columns (``x[um]``), or as LAMMPS states it.
+
     Besides positions and radii the columns are: ``fragment``, the number of the fragment or piece, 0 being the largest;
     ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
     dropped are left out. The frames of a spin-up are those of the frame that turns with the grain.
@@ -271,9 +288,13 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
         if len(frames) > 1:
             raise InputError(f"{path}: a {path.suffix} file holds one frame, but there are {len(frames)}; use .xyz")
         text = frames[0][0].rename(columns={"radius": "r"}).assign(**_scaled(frames[0][0], factor, radius="r"))
+        if unit != "nm":
+            text = text.rename(columns={name: f"{name}[{unit}]" for name in "xyzr"})
         text = text.to_csv(sep=_TABLES[path.suffix], index=False, float_format="%.12g")
     else:
         write = _xyz if path.suffix in _XYZ else _dump
+        if write is _dump and unit not in _STYLES:
+            raise InputError(f"{path}: LAMMPS has no units with {unit}; allowed: {', '.join(_STYLES)}")
         text = "".join(
             write(
                 table.assign(**_scaled(table, factor)), None if box is None else box / factor, about | {"unit": unit}, k
@@ -361,7 +382,8 @@ def _dump(table, box, about, step):
     sides = "pp pp pp" if box is not None else "ff ff ff"
     columns = "id type " + " ".join("xu yu zu".split() + list(table.columns[3:]))
     rows = _rows(table.assign(id=table.index + 1, type=1)[["id", "type", *table]])
+    first = f"ITEM: UNITS\n{_STYLES[about['unit']]}\n" if step == 0 and about["unit"] != "nm" else ""
     return (
-        f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(table)}\nITEM: BOX BOUNDS {sides}\n{edges}"
+        f"{first}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(table)}\nITEM: BOX BOUNDS {sides}\n{edges}"
         f"ITEM: ATOMS {columns}\n{rows}"
     )

@@ -36,6 +36,8 @@ __all__ = [
     "unit_option",
 ]
 
+OF_STARTS = (__name__,)
+"""Modules of which the hash of the source of a command's runs is made besides those of its experiment."""
 SHIFT = 1e-12
 """How far the monomers of a start are moved [m], a hundredth of an atom."""
 
@@ -165,39 +167,47 @@ def several(target, kind, material, provenance, starts, make):
         If the file holds other runs, or others are not finished.
     """
     block = Block(Path(target), material, list(range(starts)), provenance)
-    there = _starts_there(block, kind) if block.target.exists() else 0
-    if there >= starts:
+    if _starts_there(block, kind) >= starts:
         return
     if block.others(kind):
         raise InputError(
             f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
             "finish them with their own command, remove the folder, or give another --out."
         )
-    try:
-        with locked(block.folder / "lock", logging.getLogger(__name__)):
-            if there:
-                # so that more starts are added to those of the file
-                with atomic(block.piece(0)) as piece:
-                    shutil.copyfile(block.target, piece)
-            pieces = Pieces(block, kind)
-            with progress_bar(starts) as tell:
-                for start in block.seeds:
-                    tell(start, 0.0)
-                    if start not in pieces:
-                        row = make(start, block.checkpoint(start), lambda part, start=start: tell(start, part))
-                        pieces.add(start, row)
-                    tell(start, 1.0)
-            pieces.join()
-    except (InputError, RuntimeError):
-        # what failed will do so again: only finished starts are worth keeping
-        if not any(block.folder.glob("seed_*.nc")):
-            shutil.rmtree(block.folder, ignore_errors=True)
-        raise
-    shutil.rmtree(block.folder, ignore_errors=True)
+    with locked(block.folder / "lock", logging.getLogger(__name__)):
+        # the same command may have ended while this one waited
+        there = _starts_there(block, kind)
+        try:
+            if there < starts:
+                _make_starts(block, kind, there, make)
+        except (InputError, RuntimeError):
+            # what failed will do so again: only finished starts are worth keeping
+            if not any(block.folder.glob("seed_*.nc")):
+                shutil.rmtree(block.folder, ignore_errors=True)
+            raise
+        shutil.rmtree(block.folder, ignore_errors=True)
+
+
+def _make_starts(block, kind, there, make):
+    """Make the starts of a block that are not finished, and join them with those that its file has."""
+    if there:
+        with atomic(block.piece(0)) as piece:
+            shutil.copyfile(block.target, piece)
+    pieces = Pieces(block, kind)
+    with progress_bar(len(block.seeds)) as tell:
+        for start in block.seeds:
+            tell(start, 0.0)
+            if start not in pieces:
+                row = make(start, block.checkpoint(start), lambda part, start=start: tell(start, part))
+                pieces.add(start, row)
+            tell(start, 1.0)
+    pieces.join()
 
 
 def _starts_there(block, kind):
-    """How many of these very runs a file holds; InputError where it holds those of other settings."""
+    """How many of these very runs the file of a block holds; InputError where it holds those of other settings."""
+    if not block.target.exists():
+        return 0
     found = io.read(block.target, kind)
     if any(found.attrs.get(name) != block.provenance[name] for name in ("code_hash", "settings_hash", "input_hash")):
         raise InputError(

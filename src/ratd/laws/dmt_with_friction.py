@@ -21,6 +21,7 @@ from ratd.laws.contact_fields import (
     NCY, NCZ, NORMAL, STEP, TIX, TIY, TIZ, TJX, TJY, TJZ, WIX, WIY, WIZ, WJX, WJY, WJZ, law_fields,
 )  # fmt: skip
 from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overlap, hertz_stiffness, vibration_period
+from ratd.laws.johnson_kendall_roberts import S_END
 
 FRICTIONS = ("none", "velocity", "spring")
 NO_FRICTION, VELOCITY, SPRING = range(len(FRICTIONS))
@@ -418,7 +419,10 @@ class DMT(NamedTuple):
         return contact[at + DAMPING]
 
     def contact_radius(self, contact, at):
-        return math.sqrt(max(contact[at + OVERLAP], 0.0) * contact[at + REDUCED])
+        # it shrinks to a point as the spheres part, where a stress would be infinite: that of JKR ends at S_END^2 of
+        # the radius at rest, and so does this one
+        at_rest = equilibrium_overlap(contact[at + HERTZ], contact[at + ADHESION])
+        return math.sqrt(max(contact[at + OVERLAP], S_END**4 * at_rest) * contact[at + REDUCED])
 
 
 def dmt(

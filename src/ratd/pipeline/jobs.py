@@ -8,7 +8,7 @@ import fcntl
 import logging
 import sys
 import time
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -53,6 +53,25 @@ def task(script, function, *writes):
         "writes": list(writes),
         "hash": source_hash(script, modules=[module], extra=layout),
     }
+
+
+@contextmanager
+def failure_told(number, done):
+    """A context in which a grain is made: that its integration fails is told by ``done``, and ends nothing else.
+
+    Parameters
+    ----------
+    number : int
+        Place of the grain among those that wait.
+    done : callable
+        See `Job.blocks`.
+    """
+    try:
+        yield
+    except RuntimeError as error:
+        if type(error) is not RuntimeError:  # a subclass is no matter of this grain
+            raise
+        done(number, failure=error)
 
 
 class _LogFile(logging.FileHandler):
@@ -197,14 +216,8 @@ class Job:
 
         def make_all(waiting, done):
             for number, (block, seed) in enumerate(waiting):
-                try:
-                    row = make(seed, block.checkpoint(seed))
-                except RuntimeError as error:
-                    if type(error) is not RuntimeError:  # a subclass is no matter of this grain
-                        raise
-                    done(number, failure=error)
-                else:
-                    done(number, row)
+                with failure_told(number, done):
+                    done(number, make(seed, block.checkpoint(seed)))
 
         self.blocks([block], kind, make_all)
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from ratd.aggregates.mrn import moment_of_length
-from ratd.experiments.collision.likeness import likeness, likeness_table
+from ratd.experiments.collision.likeness import likeness, likeness_table, of_equal_spheres
 
 RADII = np.array([0.3e-6, 0.4e-6, 0.5e-6])
 SPEEDS = [10.0, 20.0]
@@ -29,6 +29,14 @@ def test_a_known_radius_is_found():
     assert found["radius_low"] <= found["radius"] <= found["radius_high"]
     assert found["radius"] == pytest.approx(0.44e-6, abs=3 * (found["radius_high"] - found["radius_low"]))
     assert found["radius_high"] - found["radius_low"] < 0.03e-6
+
+
+def test_equal_spheres_are_those_of_the_usual_contacts():
+    table = pd.DataFrame(
+        {"largest_radius": [1.0, 1, 1, 2], "mean_sphere_radius": 1.0, "second_contact": [0.3, 0.3, 0.5, 0.3]}
+    )
+    assert list(of_equal_spheres(table).index) == [0, 1]
+    assert of_equal_spheres(table[:0]).empty
 
 
 def test_what_lies_beyond_all_radii_is_told():

@@ -18,7 +18,14 @@ from ratd.experiments.collision.figures.page import page
 from ratd.experiments.collision.figures.scaling import scaling
 from ratd.experiments.collision.figures.snapshots import origin_of, picture, positions, row_of
 from ratd.experiments.collision.plan import Plan
-from ratd.experiments.collision.tables import COLUMNS, THRESHOLDS, cluster_table, collision_table, threshold_table
+from ratd.experiments.collision.tables import (
+    COLUMNS,
+    THRESHOLDS,
+    cluster_table,
+    collision_table,
+    materials_of_laws,
+    threshold_table,
+)
 from ratd.pipeline import blocks, io, queue
 from ratd.pipeline.kinds import as_dataset
 
@@ -123,11 +130,15 @@ def test_columns_of_the_tables(done):
 
 def test_threshold_of_the_equal_spheres(done):
     table = collision_table(files(done))
-    found = threshold_table(table, lambda energy: replace(SILICA, surface_energy=energy), 50)
+    found = threshold_table(table, materials_of_laws(files(done)), 50)
     assert list(found) == list(THRESHOLDS) and len(found) == 2
     equal = found[found["cluster"] == "equal"].iloc[0]
     assert 2.0 < equal["velocity"] < 25.0 and equal["sticking_velocity"] == pytest.approx(0.735, abs=0.01)
     mass = 4 / 3 * np.pi * 2000 * 0.4e-6**3
+    # with the material of its law
+    stiff = replace(SILICA, youngs_modulus=4 * SILICA.youngs_modulus, density=2 * SILICA.density)
+    harder = threshold_table(table, {"velocity": stiff}, 50).query("cluster == 'equal'").iloc[0]
+    assert harder["sticking_velocity"] < 0.8 * equal["sticking_velocity"]
     assert equal["energy_per_contact"] * 9.16e-18 == pytest.approx(mass * equal["velocity"] ** 2 / 4, rel=0.02)
     assert np.isnan(found[found["cluster"] == "unequal"].iloc[0]["radius"])
 
@@ -143,7 +154,7 @@ def test_figures_draw(done, name):
         "figure8": lambda: figure8(table, "velocity", "unequal"),
         "dissipation": lambda: dissipation(table, *names),
         "masses": lambda: masses(rows_by_cluster(paths, *names), names[0]),
-        "scaling": lambda: scaling(threshold_table(table, lambda energy: SILICA, 20).assign(below=9.0, above=10.0)),
+        "scaling": lambda: scaling(threshold_table(table, materials_of_laws(paths), 20).assign(below=9.0, above=10.0)),
     }[name]()
     figure.canvas.draw()
     assert all(axes.has_data() for axes in figure.axes)

@@ -89,6 +89,14 @@ def test_the_steps_go_from_the_config_to_the_run():
         ({"sets": {"base": {"material": "x"}}}, "compression.sets.base.material is 'x'; allowed: a-C"),
         ({"sets": {"base": {"material": "q-S"}}}, "compression.sets.base.radius_nm is null; allowed: a number"),
         ({"sets": {"base": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),
+        (
+            {"sets": {"base": {"radii": {"law": "lognormal", "smallest_nm": 25, "largest_nm": 300}}}},
+            "the key compression.sets.base.radii.median_nm is missing; allowed: a mapping with the keys law, median_nm",
+        ),
+        (
+            {"sets": {"base": {"radii": {"law": "mrn", "median_nm": 50, "smallest_nm": 25, "largest_nm": 300}}}},
+            "the key 'median_nm' in compression.sets.base.radii is unknown",
+        ),
         ({"sets": {"base": {"speed": 1}}}, "the key 'speed' in compression.sets.base is unknown"),
     ],
 )

@@ -45,6 +45,8 @@ def test_the_greatest_filling_factor_is_found():
 def test_the_filling_factor_at_a_pressure_is_found():
     table = table_of(lambda phi: P_0 * phi**3)
     assert strength.phi_at(table, P_0 * 0.2**3).value == pytest.approx([0.2])
+    # beyond both ends of what is known
+    assert all(np.isnan(strength.phi_at(table, P_0 * phi**3).value).all() for phi in (0.03, 0.6))
     assert strength.ratio_at(table, 0.1).value == pytest.approx([1.0])
     scatter = strength.scatter_at(table_of(lambda phi: P_0 * phi**3, 500, 0.1), 0.1)
     assert scatter.value == pytest.approx(0.1, rel=0.15)

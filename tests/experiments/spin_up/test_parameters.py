@@ -141,11 +141,20 @@ def test_ways_are_files_and_a_killed_job_keeps_its_finished_grains(job, tmp_path
             raise Killed
         return disruption(run)
 
+    def broken(run):
+        calls.append(run.attrs["seed"])
+        if len(calls) == 4:
+            raise RuntimeError("the integration failed")
+        return disruption(run)
+
     with pytest.raises(Killed):
         spin_up_ways(job, targets, how, "disruption", failing)
     assert not any(path.exists() for path in targets)
+    with pytest.raises(InputError, match="1 of 2 grains failed, the others are kept: .*the integration failed"):
+        spin_up_ways(job, targets, how, "disruption", broken)
     spin_up_ways(job, targets, how, "disruption", failing)
-    assert calls == [3, 4, 3, 3, 4]  # two were kept, the third is made again
+    # two were kept; what fails when it is made again leaves the fourth to be made
+    assert calls == [3, 4, 3, 3, 4, 3]
     for path, way in zip(targets, how, strict=True):
         file = io.read(path, "disruption")
         assert list(file["seed"].values) == [3, 4]

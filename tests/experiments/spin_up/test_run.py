@@ -19,11 +19,13 @@ from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
 from ratd.experiments.spin_up import how
 from ratd.experiments.spin_up import run as spinup
 from ratd.experiments.spin_up.records import edge_of_record
-from ratd.experiments.spin_up.run import spin_up
+from ratd.experiments.spin_up.run import Run, spin_up
 from ratd.geometry.box import open_space
 from ratd.geometry.shape import inertia_tensor
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
+from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overlap, hertz_stiffness
 from ratd.laws.jkr_with_springs import COMPRESSION, PULL_OFF, jkr
+from ratd.laws.johnson_kendall_roberts import S_END
 from ratd.observables.pieces import largest_fragment
 
 
@@ -208,6 +210,9 @@ def test_foreign_or_damaged_checkpoint_is_not_used(grain, tmp_path, monkeypatch)
     assert path.exists()
     other = spin_up(grain, epsilon=0.2, max_steps=3000, checkpoint=path)
     assert float(other.omega[-1]) < float(short.omega[-1])
+    # of a spin-up that waits the explicit step decides how the grain comes to rest, and nothing else
+    fine = [Run(grain, how.how_to_turn("BA", 1.0, timestep_factor=factor), 1.0).key for factor in (0.02, 0.05)]
+    assert fine[0] != fine[1]
     with monkeypatch.context() as patch:
         patch.setattr(checkpoints, "_source", lambda module: "of yesterday")
         spin_up(grain, epsilon=0.3, max_steps=2000, checkpoint=path)
@@ -220,6 +225,18 @@ def test_foreign_or_damaged_checkpoint_is_not_used(grain, tmp_path, monkeypatch)
     path.write_bytes(path.read_bytes()[:1000])
     again = spin_up(grain, epsilon=0.3, max_steps=3000, checkpoint=path)
     xr.testing.assert_identical(short, again)
+
+
+def test_a_spin_up_under_dmt_has_a_finite_stress(grain):
+    """Also where it is taken in the step in which a contact ends, whose area is none."""
+    turned = spin_up(grain, law="dmt", epsilon=0.02)
+    R, material = reduced_radius(*np.sort(grain.radius)[:2]), grain.material
+    adhesion = adhesion_force(R, material.surface_energy)
+    overlap = equilibrium_overlap(hertz_stiffness(R, material.reduced_modulus), adhesion)
+    # as far as the area of JKR shrinks; while at rest a contact has none
+    greatest = adhesion / (np.pi * S_END**4 * overlap * R)
+    assert 0.0 < turned["total_stress"].max() < grain.n_contacts * greatest
+    assert ratd.disruption(turned)["omega_disr"].item() > 0.0
 
 
 def test_integration_that_fails_says_so(grain, monkeypatch):

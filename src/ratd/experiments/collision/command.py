@@ -12,8 +12,10 @@ from ratd.base.words import plural
 from ratd.experiments.collision.figures.snapshots import PANELS, origin_of, picture, positions
 from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
-from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several
-from ratd.laws.dmt_with_friction import FRICTIONS, dmt
+from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several
+from ratd.experiments.collision.stages import contact_of
+from ratd.laws.chosen import law_of
+from ratd.laws.dmt_with_friction import dmt
 from ratd.pictures.collision_page import collision_page
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -56,9 +58,9 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     grains = [aggregate(path, unit, material) for path in files]
     out = file.with_name(f"{file.stem}_collided") if out is None else out
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
-    source = source_hash(modules=["ratd.experiments.collision.run"])
+    source = source_hash(modules=["ratd.experiments.collision.run", *OF_STARTS])
     made_with = provenance(source, {"material": material, "unit": unit, **how}, files)
-    touching = dmt() if law == "dmt" else None
+    contact = contact_of(law_of(law, dmt))
     resting = []
 
     def make(start, checkpoint, progress):
@@ -80,8 +82,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
             sample=0,
             law=law,
             cluster=file.stem,
-            friction=law if touching is None else FRICTIONS[touching.friction],
-            damping_time=0.0 if touching is None else touching.viscous_time,
+            **contact,
             second_contact=np.nan,
             source=source,
         )

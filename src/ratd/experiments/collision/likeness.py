@@ -12,7 +12,7 @@ from ratd.aggregates.mrn import moment_of_length
 from ratd.experiments.collision.fragmentation import bootstrap_means, means
 from ratd.pipeline.kinds import Kind, entries, register
 
-__all__ = ["COLUMNS", "QUANTITIES", "is_equal", "likeness", "likeness_table"]
+__all__ = ["COLUMNS", "QUANTITIES", "is_equal", "likeness", "likeness_table", "of_equal_spheres"]
 
 QUANTITIES = {"X": "X", "N_s": "N_s", "energy_half": "energy left at 0.5 us"}
 """Column of `ratd.experiments.collision.tables.COLUMNS` -> what it is called."""
@@ -24,7 +24,7 @@ COLUMNS = {
     "radius": ("m", "radius of the equal spheres that it is most like"),
     "radius_low": ("m", "16 % of the bootstrap"),
     "radius_high": ("m", "84 % of the bootstrap"),
-    "q": ("1", "moment of the MRN law whose length that is"),
+    "q": ("1", "moment of the MRN law from 50 nm to 2.5 um whose length that is"),
     "q_low": ("1", "that of `radius_low`"),
     "q_high": ("1", "that of `radius_high`"),
     "misfit": ("1", "root mean square difference that is left"),
@@ -40,6 +40,12 @@ POINTS = 201
 def is_equal(table):
     """Whether collisions are of equal spheres: Series of bool of a table, bool of one of its rows."""
     return table["largest_radius"] <= table["mean_sphere_radius"] * (1.0 + 1e-9)
+
+
+def of_equal_spheres(table):
+    """Collisions of equal spheres whose clusters have the most usual part of second contacts, of a table of them."""
+    equal = table[is_equal(table)]
+    return equal[equal["second_contact"].isin(equal["second_contact"].mode()[:1])]
 
 
 def likeness(cluster, equal, quantity, samples=500, seed=0):
@@ -113,7 +119,7 @@ def likeness_table(table, samples=500):
     same = is_equal(table)
     found = []
     for law, part in table.groupby("law", sort=False):
-        alike = part[same.loc[part.index] & (part["second_contact"] == 0.5)]
+        alike = of_equal_spheres(part)
         equal = dict(list(alike.groupby(alike["largest_radius"].round(12))))
         for cluster, own in part[~same.loc[part.index]].groupby("cluster", sort=False):
             own, wanted = _with_common_velocities(own, equal)

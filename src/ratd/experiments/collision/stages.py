@@ -7,12 +7,12 @@ from ratd.aggregates.mrn import mrn
 from ratd.base.materials import Material
 from ratd.experiments.collision.files import cluster_row, clusters_of, collision_row
 from ratd.experiments.collision.run import at_rest, collide
-from ratd.laws.dmt_with_friction import dmt
+from ratd.laws.dmt_with_friction import DMT, FRICTIONS, dmt
 from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline import io
 from ratd.pipeline.jobs import duration
 
-__all__ = ["build", "collide_all", "collided", "law_from", "radii_from", "relax", "told"]
+__all__ = ["build", "collide_all", "collided", "contact_of", "law_from", "radii_from", "relax", "told"]
 
 
 def radii_from(settings, sample):
@@ -46,6 +46,13 @@ def law_from(settings):
     """The law of a part of the config: `law`, and for DMT its options."""
     options = {name: value for name, value in settings.items() if name != "law"}
     return dmt(**options) if settings["law"] == "dmt" else jkr(**options)
+
+
+def contact_of(law):
+    """What a row of a file of collisions says of a law: ``friction``, and ``damping_time`` [s], 0 but for DMT."""
+    if isinstance(law, DMT):
+        return {"friction": FRICTIONS[law.friction], "damping_time": law.viscous_time}
+    return {"friction": "jkr", "damping_time": 0.0}
 
 
 def built(settings, sample):
@@ -117,9 +124,9 @@ def collided(cluster, settings, rotation, *, snapshot_every=0, checkpoint=None, 
     source : str
         Hash of the source.
     """
-    own = settings["law"]
+    law = law_from(settings["law"])
     run = collide(
-        cluster, cluster, settings["velocity"], settings["impact_parameter"], rotation, law_from(own),
+        cluster, cluster, settings["velocity"], settings["impact_parameter"], rotation, law,
         duration=settings["duration"], timestep=settings["timestep"], records=settings["records"],
         snapshot_every=snapshot_every, relaxed=True, checkpoint=checkpoint, progress=progress,
     )  # fmt: skip
@@ -128,8 +135,7 @@ def collided(cluster, settings, rotation, *, snapshot_every=0, checkpoint=None, 
         sample=cluster.seed,
         law=settings["law_name"],
         cluster=settings["cluster_name"],
-        friction=own.get("friction", own["law"]),
-        damping_time=own.get("viscous_time", 0.0),
+        **contact_of(law),
         second_contact=settings["second_contact"],
         source=source,
     )

@@ -1,7 +1,5 @@
 """Tables of collisions: a row each, fragmentation velocities, and Table 1 of the clusters."""
 
-from dataclasses import replace
-
 import numpy as np
 import pandas as pd
 
@@ -21,6 +19,7 @@ __all__ = [
     "cluster_table",
     "collision_table",
     "findings",
+    "materials_of_laws",
     "mean_energy",
     "series_of",
     "threshold_table",
@@ -127,6 +126,11 @@ def _rows(paths):
     return found
 
 
+def materials_of_laws(paths):
+    """Material of the collisions under each law: name of the law -> ratd.Material."""
+    return {row["law"].item(): material for row, material in _rows(paths)}
+
+
 def collision_table(paths):
     """All collisions of some files, a row each, `COLUMNS`, pandas.DataFrame."""
     table = []
@@ -184,15 +188,15 @@ def mean_energy(series):
     return series[0][1]["time"].to_numpy(), np.mean(energies, axis=0)
 
 
-def threshold_table(table, material_of_energy, samples=2000):
+def threshold_table(table, materials, samples=2000):
     """Fragmentation velocities of all laws, clusters and impact parameters of a table.
 
     Parameters
     ----------
     table : pandas.DataFrame
         From `collision_table`.
-    material_of_energy : callable
-        Surface energy [J m-2] -> ratd.Material.
+    materials : dict of str to ratd.Material
+        Name of a law -> material under it.
     samples : int
         Of the bootstrap.
 
@@ -214,7 +218,7 @@ def threshold_table(table, material_of_energy, samples=2000):
         row["error"] = np.hypot(row["error"], GRID * (row["above"] - row["below"]))
         row |= {"collisions": len(part), "sticking_velocity": np.nan, "energy_per_contact": np.nan}
         if equal:
-            material = material_of_energy(one["surface_energy"])
+            material = materials[one["law"]]
             mass = 4.0 / 3.0 * np.pi * material.density * radius**3
             if one["damping_time"] > 0.0:
                 stick = sticking_velocity(radius, radius, material, one["damping_time"])
@@ -243,9 +247,8 @@ def cluster_table(paths):
 
 def findings(files, settings, say):
     """Tables of a job of the pipeline that follow from collisions alone: collisions, thresholds, likeness."""
-    material = material_of(io.read(files["runs"][0], "collisions"))
     table = collision_table(files["runs"])
-    thresholds = threshold_table(table, lambda energy: replace(material, surface_energy=energy), settings["bootstrap"])
+    thresholds = threshold_table(table, materials_of_laws(files["runs"]), settings["bootstrap"])
     say(f"{len(table)} collisions, {int(thresholds['velocity'].notna().sum())} fragmentation velocities")
     tables = {"collision_table": table, "collision_thresholds": thresholds}
     tables["collision_likeness"] = likeness_table(table, min(settings["bootstrap"], 500))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
@@ -47,7 +47,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
     given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_compressed") if out is None else out
     settings = {"material": material, "unit": unit, "strain_rate": strain_rate, "until_phi": until_phi}
-    made_with = provenance(source_hash(modules=["ratd.experiments.compression.run"]), settings, [file])
+    made_with = provenance(source_hash(modules=["ratd.experiments.compression.run", *OF_STARTS]), settings, [file])
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()

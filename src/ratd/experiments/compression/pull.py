@@ -58,7 +58,9 @@ register(
                     "monomer_radius": ("m", "r_0"),
                 },
             ),
-            **over(("entry",), {"phi_strength": ("1", "filling factor there, nan where there is no tension")}, nan=True),
+            **over(
+                ("entry",), {"phi_strength": ("1", "filling factor there, nan where there is no tension")}, nan=True
+            ),
             **over(
                 ("entry",),
                 {

@@ -186,12 +186,15 @@ def mean_pressure(table, *, alone=False):
 
 
 def phi_at(table, pressure, high=0.45):
-    """Filling factor between 0.05 and `high` at which the mean pressure reaches a value [Pa], `Fit` of one number."""
+    """Filling factor between 0.05 and `high` at which the mean pressure reaches a value [Pa], `Fit` of one number.
+
+    NaN where it is above or below all the way.
+    """
     phi, all_pressures = _within(table, 0.05, high)
 
     def fit(mean):
         rising = np.maximum.accumulate(np.maximum(mean, 1e-300))
-        return np.exp(np.interp(np.log(pressure), np.log(rising), np.log(phi)))
+        return np.exp(np.interp(np.log(pressure), np.log(rising), np.log(phi), left=np.nan, right=np.nan))
 
     return of_means(all_pressures, fit)
 

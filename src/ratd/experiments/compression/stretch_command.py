@@ -9,7 +9,7 @@ import numpy as np
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
@@ -46,7 +46,7 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
     out = file.with_name(f"{file.stem}_stretched") if out is None else out
     settings = {"material": material, "unit": unit, "phi": phi, "strain_rate": strain_rate}
     settings |= {"axes": axes, "unload": unload}
-    made_with = provenance(source_hash(modules=["ratd.experiments.compression.stretch"]), settings, [file])
+    made_with = provenance(source_hash(modules=["ratd.experiments.compression.stretch", *OF_STARTS]), settings, [file])
 
     def make(start, checkpoint, progress):
         grain = started(given, start)

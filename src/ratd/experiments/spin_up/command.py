@@ -7,7 +7,7 @@ import click
 
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -44,7 +44,7 @@ def command(file, material, unit, starts, out, epsilon):
     given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_spin_up") if out is None else out
     settings = {"material": material, "unit": unit, "epsilon": epsilon}
-    made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run"]), settings, [file])
+    made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run", *OF_STARTS]), settings, [file])
 
     def make(start, checkpoint, progress):
         begun = time.monotonic()

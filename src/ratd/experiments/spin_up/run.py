@@ -188,6 +188,8 @@ class Run:
         """What a checkpoint must have been made with to be of use."""
         grain = self.grain
         settings = (grain.material, self.law, self.motion, self.integrator, self.records, self.snapshot_every)
+        # how the grain came to rest goes with it too
+        settings += (self.how.attributes["timestep_factor"],)
         return checkpoints.fingerprint(__name__, [grain.position, grain.radius], *settings)
 
     def begin(self, state):

@@ -72,7 +72,7 @@ def run_of_seed(paths, seed):
 
 
 def read_table(path):
-    """Table of all grains, pandas.DataFrame, as `ensemble.grain_table` made it."""
+    """Table of all grains, pandas.DataFrame, as `grain_table.grain_table` made it."""
     return io.read(path, "table").to_pandas()
 
 
@@ -82,5 +82,5 @@ def read_grown(paths):
 
 
 def read_fit(path):
-    """Fit of Eq. 33, xarray.Dataset, as `ensemble.table3_dataset` made it."""
+    """Fit of Eq. 33, xarray.Dataset, as `eq33.table3_dataset` made it."""
     return io.read(path, "fit")

@@ -18,6 +18,7 @@ from ratd.experiments.spin_up.run_files import run_row
 from ratd.experiments.spin_up.spin import told, turn
 from ratd.geometry.box import open_space
 from ratd.laws.jkr_with_springs import jkr
+from ratd.pipeline.jobs import failure_told
 from ratd.pipeline.partial import Block
 
 __all__ = ["calibrate", "first_step", "of_material", "spin_up_ways", "steps_to", "vary", "way_material"]
@@ -98,7 +99,8 @@ def spin_up_ways(job, targets, ways, kind, row, *, law=None):
                 acceleration, factor = how["angular_acceleration"], how["timestep_factor"]
                 how = how | {"max_steps": steps_to(grain, way["reach"], acceleration, factor)}
             progress = told(job.progress(f"{block.target.stem} seed {seed}"))
-            done(number, row(turn(grain, how, checkpoint=block.checkpoint(seed), progress=progress, **own)))
+            with failure_told(number, done):
+                done(number, row(turn(grain, how, checkpoint=block.checkpoint(seed), progress=progress, **own)))
 
     job.blocks(blocks, kind, make)
 

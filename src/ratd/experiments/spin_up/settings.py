@@ -196,7 +196,7 @@ class Settings(Cells):
         return {"parameters": names * (len(self.parameter_files("", drive)) // max(1, len(names)))}
 
     def parameters(self, drive, kind, size):
-        """Settings of the runs of figure 9 of one type and size, one a way (see `variations.spin_up_ways`)."""
+        """Settings of the runs of figure 9 of one type and size, one a way (see `same_grains.spin_up_ways`)."""
         own = self.config["figures"]["figure9"]
         pace = {}
         if drive == "literal":
@@ -250,7 +250,7 @@ class Settings(Cells):
         return [] if self.config["figures"]["formulae"] is None else list(FORMULAE)
 
     def formula_runs(self, formula):
-        """Settings of the runs with one formula as printed, one a type and size (see `variations.spin_up_ways`).
+        """Settings of the runs with one formula as printed, one a type and size (see `same_grains.spin_up_ways`).
 
         In the order of `formula_cells`.
         """

@@ -14,7 +14,7 @@ from ratd.experiments.collision.figures.look import (
 )
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
-from ratd.experiments.collision.likeness import is_equal
+from ratd.experiments.collision.likeness import of_equal_spheres
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 
@@ -34,8 +34,7 @@ def figure5(table, law):
     matplotlib.figure.Figure
         Open triangles on the line X = 0.15: where the paper prints the fragmentation velocity.
     """
-    shown = table[(table["law"] == law) & is_equal(table) & (table["impact_parameter"] == 0)]
-    shown = shown[shown["second_contact"] == shown["second_contact"].mode().iloc[0]] if len(shown) else shown
+    shown = of_equal_spheres(table[(table["law"] == law) & (table["impact_parameter"] == 0)])
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Clusters of equal spheres, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(shown):

@@ -17,7 +17,7 @@ from ratd.experiments.collision.figures.look import (
 )
 from ratd.experiments.collision.fragmentation import STICKING
 from ratd.experiments.collision.printed import PRINTED_RADII
-from ratd.experiments.collision.likeness import is_equal
+from ratd.experiments.collision.likeness import of_equal_spheres
 from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, styled
 
 CUT = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
@@ -45,7 +45,7 @@ def figure6(table, law, mrn, cut=None):
         The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
-    own, without, equal = table[table["cluster"] == mrn], table[table["cluster"] == cut], table[is_equal(table)]
+    own, without, equal = table[table["cluster"] == mrn], table[table["cluster"] == cut], of_equal_spheres(table)
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"MRN clusters, {law_text(law)}")
     left, right = figure.subplots(1, 2)
     if not len(own):
@@ -53,7 +53,7 @@ def figure6(table, law, mrn, cut=None):
         return figure
     for axes, quantity in ((left, "X"), (right, "N_s")):
         for radius in BESIDE:
-            part = equal[np.isclose(equal["largest_radius"], radius) & (equal["second_contact"] == 0.5)]
+            part = equal[np.isclose(equal["largest_radius"], radius)]
             if len(part):
                 look = {"color": colour_of(radius), "marker": marker_of(radius), "lw": 0.9}
                 plot_means(axes, part, quantity, radius_label(radius), **look)

@@ -5,7 +5,7 @@ from matplotlib import colormaps
 
 from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, law_text
 from ratd.experiments.collision.fragmentation import mean_and_error, means
-from ratd.experiments.collision.likeness import is_equal
+from ratd.experiments.collision.likeness import of_equal_spheres
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
 
 MOST = 6
@@ -28,7 +28,7 @@ def figure8(table, law, mrn):
     matplotlib.figure.Figure
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0) & table["energy_half"].notna()]
-    equal, own = table[is_equal(table) & (table["second_contact"] == 0.5)], table[table["cluster"] == mrn]
+    equal, own = of_equal_spheres(table), table[table["cluster"] == mrn]
     figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"Energy left at 0.5 µs, {law_text(law)}")
     axes = figure.subplots()
     if not len(equal):

@@ -3,6 +3,7 @@
 import re
 
 from ratd.experiments.compression.figures.common import pressures_over, read_sets, seeds_text, strain_text
+from ratd.experiments.compression.strength import of_same_clusters
 from ratd.pictures.style import styled
 
 
@@ -15,7 +16,7 @@ def longest_step(table):
 @styled
 def fewer_steps(tables):
     """Mean pressures of sets that differ in their steps, and how many these are; below over those of explicit ones."""
-    labels = []
+    tables, labels = of_same_clusters(tables), []
     for table in tables:
         longest = longest_step(table)
         name = "explicit" if longest is None else rf"at most {longest:.0f} $t_0$"
