@@ -22,7 +22,6 @@ __all__ = [
     "HOUR",
     "REACH",
     "attempt_frequency",
-    "breaking_rate",
     "contact_barriers",
     "dmt_barrier",
     "jkr_barrier",
@@ -117,8 +116,8 @@ def attempt_frequency(stiffness, reduced_mass):
     return np.sqrt(stiffness / reduced_mass) / (2.0 * math.pi)
 
 
-def breaking_rate(barrier, temperature, frequency, damping_ratio=0.0):
-    """Rate at which heat breaks a contact.
+def mean_life(barrier, temperature, frequency, damping_ratio=0.0):
+    """Mean life of a contact before heat breaks it.
 
     Parameters
     ----------
@@ -129,23 +128,17 @@ def breaking_rate(barrier, temperature, frequency, damping_ratio=0.0):
     frequency : array_like
         `attempt_frequency` [Hz].
     damping_ratio : array_like
-        zeta of the contact at rest; 0 gives the rate of transition state theory, which is the highest.
+        zeta of the contact at rest; 0 gives the life of transition state theory, which is the shortest.
 
     Returns
     -------
     numpy.ndarray or float
-        [s-1]: frequency (sqrt(1 + zeta^2) - zeta) exp(-barrier/kT).
+        [s]: exp(barrier/kT)/(frequency (sqrt(1 + zeta^2) - zeta)).
 
     References
     ----------
     Kramers (1940), Physica 7, 284; the top is taken to be as curved as the rest.
     """
-    slowed = np.sqrt(1.0 + np.square(damping_ratio)) - damping_ratio
-    return frequency * slowed * np.exp(-np.asarray(barrier) / (Boltzmann * np.asarray(temperature)))
-
-
-def mean_life(barrier, temperature, frequency, damping_ratio=0.0):
-    """Mean life of a contact [s], one over `breaking_rate`."""
     slowed = np.sqrt(1.0 + np.square(damping_ratio)) - damping_ratio
     return np.exp(np.asarray(barrier) / (Boltzmann * np.asarray(temperature))) / (frequency * slowed)
 

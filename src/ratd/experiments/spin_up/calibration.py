@@ -4,8 +4,7 @@ The printed equations with the Coriolis force at the old velocity feed in energy
 comes apart at an omega that depends on d omega/dt (docs/model/drives.md). The paper gives no d omega/dt that could be
 used ("hours" would be 1e16 steps), but it shows where the mass of one cell starts to fall (Fig. 4). Which d omega/dt
 gives just that is found by a fit over several of them. Only d omega/dt over the step counts, so a run with another step
-than the printed one stands for one with the printed step and d omega/dt in proportion; where there are both,
-`step_ratios` tells how well they agree.
+than the printed one stands for one with the printed step and d omega/dt in proportion.
 """
 
 import numpy as np
@@ -29,7 +28,6 @@ __all__ = [
     "onset",
     "printed_acceleration",
     "same_rate",
-    "step_ratios",
 ]
 
 MARKS = {
@@ -118,31 +116,6 @@ def calibration_table(runs):
         rows.append(row)
     table = pd.DataFrame(rows, columns=list(CALIBRATION_COLUMNS))
     return table.sort_values(["seed", "printed_acceleration", "timestep_factor"], ignore_index=True)
-
-
-def step_ratios(table, mark=ONSET):
-    """Onset of mass loss with a longer step over that with a shorter one, at the same d omega/dt over the step.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `calibration_table`.
-    mark : str
-        One of `MARKS`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for two runs of the same grain: seed, printed_acceleration, timestep_factor (of the run with the longer
-        step), shorter_factor, ratio.
-    """
-    key = ["seed", "printed_acceleration"]
-    own = table.assign(printed_acceleration=same_rate(table["printed_acceleration"]))
-    own = own.loc[own[mark].notna(), [*key, "timestep_factor", mark]]
-    pairs = own.merge(own.rename(columns={"timestep_factor": "shorter_factor", mark: "shorter"}), on=key)
-    pairs = pairs[pairs["timestep_factor"] > pairs["shorter_factor"]]
-    pairs = pairs.assign(ratio=pairs[mark] / pairs["shorter"])
-    return pairs[[*key, "timestep_factor", "shorter_factor", "ratio"]].reset_index(drop=True)
 
 
 def calibrate(table, omega_onset, mark=ONSET):

@@ -207,7 +207,7 @@ class Run:
         integrator, tries = self.integrator, 0
         pause = min(self.steps_goal, self.state.counter[STEPS] + CALL)
         while True:
-            goal = until(steps=pause, clock=self.edge(), fewest_contacts=self.fewest)
+            goal = until(steps=pause, clock=self.edge, fewest_contacts=self.fewest)
             try:
                 self.state, code = go_on(self.state, self.law, self.motion, open_space(), integrator, goal)
                 self._check_balance(energy)
@@ -243,17 +243,19 @@ class Run:
         """Whether an outer torque turns the grain; without one there is no balance of energy."""
         return self.how.attributes["drive"] != "literal"
 
-    def edge(self, ahead=0):
-        """Angular velocity [rad/s] of the next record, or of the one that comes `ahead` records after it."""
-        return min(edge_of_record(len(self.rows) + ahead, self.bound, self.records), OMEGA_RAT)
+    @property
+    def edge(self):
+        """Angular velocity [rad/s] of the next record."""
+        return min(edge_of_record(len(self.rows), self.bound, self.records), OMEGA_RAT)
 
-    def wants_snapshot(self, ahead=0):
-        """Whether the next record, or the one that comes `ahead` records after it, has a snapshot."""
-        return bool(self.snapshot_every) and (len(self.rows) + ahead) % self.snapshot_every == 0
+    @property
+    def wants_snapshot(self):
+        """Whether the next record has a snapshot."""
+        return bool(self.snapshot_every) and len(self.rows) % self.snapshot_every == 0
 
     def note(self, code):
         """Record the state, for which the time loop gave a code, and see whether the run has ended."""
-        wanted = self.wants_snapshot()
+        wanted = self.wants_snapshot
         if code == FEW_CONTACTS:
             let_go(self.state)
         self.rows.append(record(self.state, self.law, self.grain.material.density))

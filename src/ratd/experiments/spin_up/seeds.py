@@ -4,23 +4,15 @@ A cell is one (material, type, size). Its seeds are grown and spun up in blocks,
 """
 
 import re
-from itertools import groupby
 
 from ratd.pipeline.places import size_label
 
-__all__ = ["Cells", "cell_of", "consecutive", "size_label"]
+__all__ = ["Cells", "cell_of", "size_label"]
 
 
 def cell_of(names):
     """(material, type, size) of a mapping with material, type and size_nm, the size as in `Plan.sizes`."""
     return names["material"], names["type"], size_label(names["size_nm"])
-
-
-def consecutive(seeds):
-    """Rows of whole numbers without a gap, list of lists, from numbers in ascending order."""
-    # a number less its place stays the same as long as none is missing
-    rows = groupby(enumerate(seeds), key=lambda item: item[1] - item[0])
-    return [[seed for _, seed in row] for _, row in rows]
 
 
 class Cells:
@@ -77,7 +69,7 @@ class Cells:
                 number = entry["number"]
         return self.seeds[:number]
 
-    def blocks(self, cell=None, drive=None, without=()):
+    def blocks(self, cell=None, drive=None):
         """Blocks of seeds as they stand in names of files.
 
         Parameters
@@ -86,15 +78,13 @@ class Cells:
             See `seeds_of`; default: those of a cell with all seeds.
         drive : str, optional
             See `seeds_of`.
-        without : collection of int, optional
-            Seeds to leave out. A block that holds some of them falls into parts, none of which has seeds of two blocks.
 
         Returns
         -------
         list of str
             Such as ``"0-9"``; the last one may be shorter than the others.
         """
-        return self._split(self.seeds if cell is None else self.seeds_of(cell, drive), cell, without)
+        return self._split(self.seeds if cell is None else self.seeds_of(cell, drive), cell)
 
     def _block_size(self, cell):
         small = self.config.get("small_grains")
@@ -102,11 +92,10 @@ class Cells:
             return small["block_size"]
         return self.config["block_size"]
 
-    def _split(self, seeds, cell, without=()):
+    def _split(self, seeds, cell):
         step = self._block_size(cell)
         blocks = (seeds[k : k + step] for k in range(0, len(seeds), step))
-        parts = (part for block in blocks for part in consecutive(seed for seed in block if seed not in without))
-        return [f"{part[0]}-{part[-1]}" for part in parts]
+        return [f"{block[0]}-{block[-1]}" for block in blocks]
 
     def grown_block(self, cell, block):
         """Block of grown grains in which the grains of a block of some drive are, see `blocks`."""

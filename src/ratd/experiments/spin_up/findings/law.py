@@ -90,7 +90,7 @@ def _farthest(table, kind, row):
 def of_prediction(table):
     """How well laws predict grains of sizes that they were not fitted to."""
     table = table[table[MARK] > 0]
-    found = cross_validation(table, MARK, by="size")
+    found = cross_validation(table, MARK)
     return {
         f"predict.{row['predictor']} {row['type']}": Measured(row["scatter"], row["error"])
         for row in found.to_dict("records")
