@@ -137,6 +137,7 @@ def test_pulls_of_other_sorts_are_told_apart():
     # of the same clusters: each by the same part
     assert found["tension_rate_1e-06.over_0.1"] == pytest.approx((1.1, 0.0))
     assert found["tension_unloaded.over_0.1"] == pytest.approx((0.9, 0.0))
+    assert found["tension_ways"] == "by more"
     # of others: 15 +- 5 beneath 30 +- 0
     assert found["tension_N_4096.over_0.1"] == pytest.approx((2.0, 2.0 / 3.0))
     assert not any(name.endswith("over_0.2") for name in found)

@@ -81,6 +81,9 @@ def of_tension(entries):
                 found[f"tension_{way}.over_{each:g}"] = _over(
                     strength, seed, here, beside, same=not way.startswith("N")
                 )
+    ratios = [own.value for name, own in found.items() if ".over_" in name and "tension_N" not in name]
+    if ratios:
+        found["tension_ways"] = "by less than a tenth" if np.abs(np.array(ratios) - 1.0).max() < 0.1 else "by more"
     fitted = main & (phi >= TENSION_FROM) & (strength > 0.0)
     if len(np.unique(phi[fitted])) > 1:
         found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])

@@ -56,8 +56,8 @@ def tension(entries, spun=None):
     axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$ at the start", ylabel=r"$S\,r_0/\gamma$")
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
-    axes.set_ylim(bottom=2e-5)
-    axes.legend(loc="lower right")
+    axes.set_ylim(1e-4, 10.0)
+    axes.legend(loc="upper left")
     return figure
 
 
