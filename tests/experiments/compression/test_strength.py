@@ -48,6 +48,10 @@ def test_the_filling_factor_at_a_pressure_is_found():
     # beyond both ends of what is known
     assert all(np.isnan(strength.phi_at(table, P_0 * phi**3).value).all() for phi in (0.03, 0.6))
     assert strength.ratio_at(table, 0.1).value == pytest.approx([1.0])
+    # also at the end of a table, where there are no bins above
+    steep = table_of(lambda phi: P_0 * phi**3 * (1.0 + 5.0 * np.log(phi)))
+    end = steep["phi"].values[-1] / 1.02
+    assert strength.ratio_at(steep, end).value == pytest.approx([1.0 + 5.0 * np.log(end)])
     scatter = strength.scatter_at(table_of(lambda phi: P_0 * phi**3, 500, 0.1), 0.1)
     assert scatter.value == pytest.approx(0.1, rel=0.15)
     # of a normal distribution it is known to 1/sqrt(2 n)

@@ -340,6 +340,8 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
+    if {"high_16384.ratio_0.05", "n_16384.ratio_0.05"} <= set(values):
+        found["high_16384.over_ten"] = values["high_16384.ratio_0.05"].value / values["n_16384.ratio_0.05"].value
     if "slow_16384.over_0.03" in values:
         late = values["slow_16384.over_0.03"]
         early = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.02)]

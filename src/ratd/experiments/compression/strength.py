@@ -149,10 +149,13 @@ def fit_with_limit(table, low=LIMIT_RANGE[0], high=LIMIT_RANGE[1]):
 
 
 def ratio_at(table, phi):
-    """P/(P_0 phi^3) near a filling factor, `Fit` of one number."""
-    phi, pressure = _within(table, phi / NEAR, phi * NEAR)
-    ratio = pressure / table["rolling_pressure"].values[0] / phi**3
-    return of_means(ratio, np.mean)
+    """P/(P_0 phi^3) at a filling factor, from a straight line in ln phi through the bins near it; `Fit` of one number.
+
+    The mean of these bins would be that of another phi near an end of the table, where some of them are missing.
+    """
+    there, pressure = _within(table, phi / NEAR, phi * NEAR)
+    ratio = pressure / table["rolling_pressure"].values[0] / there**3
+    return of_means(ratio, lambda mean: np.polyval(np.polyfit(np.log(there / phi), mean, 1), 0.0))
 
 
 def scatter_at(table, phi):

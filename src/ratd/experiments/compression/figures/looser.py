@@ -51,9 +51,9 @@ def looser(tables):
 def _smooth(table):
     """Filling factors, and the mean over seeds of P/(P_0 phi^3) with its error, of `SMOOTH` bins each."""
     phi = table["phi"].values
-    near = table["pressure"].rolling(phi_bin=SMOOTH, center=True).mean()
-    line = table["rolling_pressure"].values[0] * phi**3
-    mean, error = (part / line for part in mean_pressure(table.assign(pressure=near)))
+    # over phi^3 before the mean, which would else be that of the greater phi
+    ratio = table["pressure"] / table["rolling_pressure"].values[0] / table["phi"] ** 3
+    mean, error = mean_pressure(table.assign(pressure=ratio.rolling(phi_bin=SMOOTH, center=True).mean()))
     there = np.isfinite(mean)
     return phi[there], (mean[there], np.nan_to_num(error[there]))
 
