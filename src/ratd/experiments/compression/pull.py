@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ratd.engine.state import FIELD_TYPES, State
-from ratd.experiments.compression.files import REFERENCE, read_cluster
+from ratd.experiments.compression.files import PULL, REFERENCE, read_cluster
 from ratd.experiments.compression.squeeze import law_of, squeezed, told
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline import io
@@ -58,9 +58,7 @@ register(
                     "monomer_radius": ("m", "r_0"),
                 },
             ),
-            **over(
-                ("entry",), {"phi_strength": ("1", "filling factor there, nan where there is no tension")}, nan=True
-            ),
+            **over(("entry",), {"phi_strength": PULL["phi_strength"]}, nan=True),
             **over(
                 ("entry",),
                 {
