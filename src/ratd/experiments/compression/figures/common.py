@@ -23,6 +23,8 @@ WAYS = {
 """Colour and dash of each way of dissipation."""
 THIN = 0.5
 """Width of a curve where it is not static [points]."""
+LEAST = 0.03
+"""Lower end of a band over its curve where the error is as great as the curve, which a logarithm cannot show."""
 PHI_LABEL = r"filling factor $\phi$"
 RATIO_LABEL = r"$P\,/\,(P_0\phi^3)$"
 
@@ -97,7 +99,7 @@ def draw_curves(above, below, tables, labels, *, alone=False):
             static = phi > table["static_from"].values[0]
             axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
             axes.plot(phi, value, color=style["color"], lw=THIN)
-            low, high = (np.maximum(mean + sign * error, 0.03 * np.abs(mean)) / unit for sign in (-1, 1))
+            low, high = (np.maximum(mean + sign * error, LEAST * np.abs(mean)) / unit for sign in (-1, 1))
             shown = static & (mean > 0.0)
             axes.fill_between(phi, np.where(shown, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ratd.experiments.compression.figures.common import PHI_LABEL, WAYS, damping_of, read_sets, strain_text
-from ratd.experiments.compression.strength import rates
+from ratd.experiments.compression.figures.common import LEAST, PHI_LABEL, WAYS, damping_of, read_sets, strain_text
+from ratd.experiments.compression.strength import of_clusters, rates
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
 NAMES = {"damping": "damping and long steps", "made": "new contacts"}
@@ -11,13 +11,15 @@ NAMES = {"damping": "damping and long steps", "made": "new contacts"}
 
 
 def panel(axes, table, text):
-    """Energy dissipated while ln phi grows by 1, over N, by way."""
-    phi, rate = rates(table, tuple(WAYS))
+    """Energy dissipated while ln phi grows by 1, over N, by way, with bands of one standard error."""
+    phi, _ = rates(table, ())
     n = table["n_monomers"].item()
     for way, (colour, dash) in WAYS.items():
-        axes.plot(
-            phi, np.where(rate[way] > 0.0, rate[way], np.nan) / n, color=colour, ls=dash, label=NAMES.get(way, way)
-        )
+        found = of_clusters(table.sizes["seed_number"], lambda own, way=way: rates(table, (way,), own)[1][way] / n)
+        rate = np.where(found.value > 0.0, found.value, np.nan)
+        axes.plot(phi, rate, color=colour, ls=dash, label=NAMES.get(way, way))
+        low = np.maximum(rate - found.error, LEAST * rate)
+        axes.fill_between(phi, low, rate + found.error, color=colour, alpha=0.2, lw=0)
     axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-14), xlim=(phi[0], 0.5))
     axes.set_title(text)
     logarithmic(axes.xaxis)
