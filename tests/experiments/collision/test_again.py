@@ -5,12 +5,12 @@ import pytest
 
 from ratd.experiments.collision.again import CELL, COMPARED, beside, main
 from ratd.experiments.collision.document_plan import run_files
-from ratd.experiments.collision.tables import collision_table
+from ratd.experiments.collision.tables import collision_table, read_collisions
 
 
 @pytest.fixture(scope="module")
 def committed():
-    return collision_table([path for path in run_files() if "velocity/570nm.nc" in path])
+    return collision_table(read_collisions([path for path in run_files() if "velocity/570nm.nc" in path]))
 
 
 def test_what_is_the_same_and_what_is_not(committed):

@@ -24,6 +24,7 @@ from ratd.experiments.collision.tables import (
     cluster_table,
     collision_table,
     materials_of_laws,
+    read_collisions,
     threshold_table,
 )
 from ratd.pipeline import blocks, io, queue
@@ -113,7 +114,7 @@ def test_other_settings_under_the_same_name_are_refused(done):
 
 
 def test_columns_of_the_tables(done):
-    table = collision_table(files(done))
+    table = collision_table(read_collisions(files(done)))
     assert list(table) == list(COLUMNS) and len(table) == 8
     slow, fast = (table[table["velocity"] == v] for v in (2.0, 25.0))
     assert slow["X"].mean() > 0.8 > 0.3 > fast["X"].mean() and slow["N_s"].mean() < fast["N_s"].mean()
@@ -129,8 +130,9 @@ def test_columns_of_the_tables(done):
 
 
 def test_threshold_of_the_equal_spheres(done):
-    table = collision_table(files(done))
-    found = threshold_table(table, materials_of_laws(files(done)), 50)
+    collisions = read_collisions(files(done))
+    table = collision_table(collisions)
+    found = threshold_table(table, materials_of_laws(collisions), 50)
     assert list(found) == list(THRESHOLDS) and len(found) == 2
     equal = found[found["cluster"] == "equal"].iloc[0]
     assert 2.0 < equal["velocity"] < 25.0 and equal["sticking_velocity"] == pytest.approx(0.735, abs=0.01)
@@ -145,7 +147,9 @@ def test_threshold_of_the_equal_spheres(done):
 
 @pytest.mark.parametrize("name", ["figure5", "figure6", "figure7", "figure8", "dissipation", "masses", "scaling"])
 def test_figures_draw(done, name):
-    table, paths = collision_table(files(done)), files(done)
+    paths = files(done)
+    collisions = read_collisions(paths)
+    table = collision_table(collisions)
     names = ("velocity", ["equal", "unequal"])
     figure = {
         "figure5": lambda: figure5(table, "velocity"),
@@ -154,7 +158,9 @@ def test_figures_draw(done, name):
         "figure8": lambda: figure8(table, "velocity", "unequal"),
         "dissipation": lambda: dissipation(table, *names),
         "masses": lambda: masses(rows_by_cluster(paths, *names), names[0]),
-        "scaling": lambda: scaling(threshold_table(table, materials_of_laws(paths), 20).assign(below=9.0, above=10.0)),
+        "scaling": lambda: scaling(
+            threshold_table(table, materials_of_laws(collisions), 20).assign(below=9.0, above=10.0)
+        ),
     }[name]()
     figure.canvas.draw()
     assert all(axes.has_data() for axes in figure.axes)

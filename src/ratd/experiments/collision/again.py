@@ -13,7 +13,7 @@ import pandas as pd
 
 from ratd.base.errors import InputError
 from ratd.experiments.collision.document_plan import run_files
-from ratd.experiments.collision.tables import collision_table
+from ratd.experiments.collision.tables import collision_table, read_collisions
 
 __all__ = ["beside", "main"]
 
@@ -51,8 +51,8 @@ def main(words=None):
         paths = sorted(Path(words[0]).glob("collision/runs/*/*/*/*.nc"))
         if not paths:
             raise InputError(f"{words[0]}: has no collisions; they are made by the target collision of snakemake.")
-        again = collision_table(paths)
-        both = beside(again, collision_table(run_files()))
+        again = collision_table(read_collisions(paths))
+        both = beside(again, collision_table(read_collisions(run_files())))
     except InputError as error:
         print(error)
         return 1

@@ -21,6 +21,7 @@ __all__ = [
     "findings",
     "materials_of_laws",
     "mean_energy",
+    "read_collisions",
     "series_of",
     "threshold_table",
 ]
@@ -116,7 +117,7 @@ CLUSTERS = {
 register("collision_clusters", Kind("Clusters (Table 1)", entries(CLUSTERS), references=REFERENCES))
 
 
-def _rows(paths):
+def read_collisions(paths):
     """Rows of files of collisions with the material of their file, list of (xarray.Dataset, ratd.Material)."""
     found = []
     for path in paths:
@@ -126,15 +127,15 @@ def _rows(paths):
     return found
 
 
-def materials_of_laws(paths):
-    """Material of the collisions under each law: name of the law -> ratd.Material."""
-    return {row["law"].item(): material for row, material in _rows(paths)}
+def materials_of_laws(collisions):
+    """Material of collisions (of `read_collisions`) under each law: name of the law -> ratd.Material."""
+    return {row["law"].item(): material for row, material in collisions}
 
 
-def collision_table(paths):
-    """All collisions of some files, a row each, `COLUMNS`, pandas.DataFrame."""
+def collision_table(collisions):
+    """Collisions (of `read_collisions`), a row each, `COLUMNS`, pandas.DataFrame."""
     table = []
-    for row, material in _rows(paths):
+    for row, material in collisions:
         energy = row["impact_energy"].item()
         time, moving = row["time"].values, row["kinetic_translation"].values + row["kinetic_spin"].values
         early = time <= HALF
@@ -177,7 +178,7 @@ def series_of(paths, choose):
             {name: row[name].item() for name in row.variables if row[name].ndim == 0},
             pd.DataFrame({name: row[name].values for name in (*SERIES, "n_contacts", "n_pieces_then")}),
         )
-        for row, _ in _rows(paths)
+        for row, _ in read_collisions(paths)
         if choose(row)
     ]
 
@@ -247,8 +248,9 @@ def cluster_table(paths):
 
 def findings(files, settings, say):
     """Tables of a job of the pipeline that follow from collisions alone: collisions, thresholds, likeness."""
-    table = collision_table(files["runs"])
-    thresholds = threshold_table(table, materials_of_laws(files["runs"]), settings["bootstrap"])
+    collisions = read_collisions(files["runs"])
+    table = collision_table(collisions)
+    thresholds = threshold_table(table, materials_of_laws(collisions), settings["bootstrap"])
     say(f"{len(table)} collisions, {int(thresholds['velocity'].notna().sum())} fragmentation velocities")
     tables = {"collision_table": table, "collision_thresholds": thresholds}
     tables["collision_likeness"] = likeness_table(table, min(settings["bootstrap"], 500))
