@@ -57,6 +57,10 @@ def test_a_number_that_changes_flips_the_verdict_on_it(values):
     assert changed["line_0.03"] == "on"
     base["pressure"] = base["pressure"] / base["phi"]
     assert findings({"base": base}, None, None)["exponent"] == "below 3"
+    loose = {name: sets[name] for name in ("base", "slow_16384", "short_16384")}
+    assert values["short_steps"] == findings(loose, None, None)["short_steps"] == "less than a tenth"
+    loose["short_16384"] = loose["short_16384"].assign(pressure=1.1 * loose["short_16384"]["pressure"])
+    assert findings(loose, None, None)["short_steps"] == "a tenth or more"
 
 
 def test_it_lies_where_an_independent_code_finds_it(values):

@@ -68,9 +68,15 @@ PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
 SMALL = "n_1024"
 """The set of small clusters that go to high filling factors; damping and rolling displacements are varied there."""
+FURTHER = "further_16384"
+"""The set of the paper's size that goes through all of the range of the fit, but no further."""
 HIGH = "high_16384"
 """The set that high filling factors are told of."""
-LOOSE = {"slow_16384": ("n_16384", 0.0055, 0.009), "explicit_16384": ("n_16384", 0.008, 0.019)}
+LOOSE = {
+    "slow_16384": ("n_16384", 0.0055, 0.009),
+    "short_16384": ("slow_16384", 0.0055, 0.009),
+    "explicit_16384": ("n_16384", 0.008, 0.019),
+}
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
 BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the base set."""
@@ -155,6 +161,16 @@ def _solved(pressure, rolling_pressure):
 
 def _several(fit):
     return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
+
+
+def of_paper_size(tables):
+    """What sets that share no cluster have in common up to 0.13, each cluster of any of them with the same weight."""
+    each = [table.isel(seed_number=[k]) for table in tables for k in range(table.sizes["seed_number"])]
+    found = {"n": len(each), "crosses": Measured(*mean_of([crosses_line(one, 0.13).value[0] for one in each]))}
+    for phi in (0.07, 0.1):
+        found[f"ratio_{phi:g}"] = Measured(*mean_of([ratio_at(one, phi).value[0] for one in each]))
+        found[f"pressure_{phi:g}"] = found[f"ratio_{phi:g}"].value * tables[0]["rolling_pressure"].values[0] * phi**3
+    return {f"all_16384.{name}": value for name, value in found.items()}
 
 
 def of_monomers(equal, tables):
@@ -323,7 +339,7 @@ def _bin_at(table, phi):
 def verdicts(values, sets):
     """Words on which sentences of the document rest."""
     found = {}
-    for name, phi in ((BY_SIZE[-1], 0.03), (HIGH, 0.1), (HIGH, 0.3)):
+    for name, phi in ((BY_SIZE[-1], 0.03), ("all_16384", 0.1), (HIGH, 0.3)):
         if f"{name}.ratio_{phi:g}" in values:
             ratio = values[f"{name}.ratio_{phi:g}"].value
             found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
@@ -340,8 +356,8 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
-    if {"high_16384.ratio_0.05", "n_16384.ratio_0.05"} <= set(values):
-        found["high_16384.over_ten"] = values["high_16384.ratio_0.05"].value / values["n_16384.ratio_0.05"].value
+    if {f"{HIGH}.ratio_0.1", f"{FURTHER}.ratio_0.1"} <= set(values):
+        found[f"{HIGH}.over_further"] = values[f"{HIGH}.ratio_0.1"].value / values[f"{FURTHER}.ratio_0.1"].value
     if "slow_16384.over_0.03" in values:
         late = values["slow_16384.over_0.03"]
         early = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.02)]
@@ -349,6 +365,9 @@ def verdicts(values, sets):
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
+    if "short_16384.over_0.01" in values:
+        off = max(abs(values[f"short_16384.over_{phi}"].value - 1.0) for phi in (0.005, 0.01))
+        found["short_steps"] = "less than a tenth" if off < 0.1 else "a tenth or more"
     if {"slow_65536.ratio_0.005", "slow_16384.ratio_0.005"} <= set(values):
         alike = [
             abs(values[f"slow_65536.ratio_{phi:g}"].value - own.value) < 2.0 * own.error
@@ -400,6 +419,8 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         values |= of_set(name, table)
     values |= of_pairs(sets)
     values |= worst_balance(sets, values)
+    if {FURTHER, HIGH} <= set(sets):
+        values |= of_paper_size([sets[FURTHER], sets[HIGH]])
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:
