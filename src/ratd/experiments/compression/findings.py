@@ -164,7 +164,7 @@ def _several(fit):
 
 
 def of_paper_size(tables):
-    """What sets that share no cluster have in common up to 0.13, each cluster of any of them with the same weight."""
+    """Where P crosses P_0 phi^3, and its ratio to it at 0.07 and 0.1, of all clusters of sets that share none."""
     each = [table.isel(seed_number=[k]) for table in tables for k in range(table.sizes["seed_number"])]
     found = {"n": len(each), "crosses": Measured(*mean_of([crosses_line(one, 0.13).value[0] for one in each]))}
     for phi in (0.07, 0.1):
@@ -356,8 +356,6 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
-    if {f"{HIGH}.ratio_0.1", f"{FURTHER}.ratio_0.1"} <= set(values):
-        found[f"{HIGH}.over_further"] = values[f"{HIGH}.ratio_0.1"].value / values[f"{FURTHER}.ratio_0.1"].value
     if "slow_16384.over_0.03" in values:
         late = values["slow_16384.over_0.03"]
         early = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.02)]
@@ -421,6 +419,7 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
     values |= worst_balance(sets, values)
     if {FURTHER, HIGH} <= set(sets):
         values |= of_paper_size([sets[FURTHER], sets[HIGH]])
+        values[f"{HIGH}.over_further"] = quotient(values[f"{HIGH}.ratio_0.1"], values[f"{FURTHER}.ratio_0.1"])
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:
