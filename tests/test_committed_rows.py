@@ -11,6 +11,7 @@ QUEUES = (
     "ratd.experiments.collision.study",
     "ratd.validation.pulling",
     "ratd.validation.lammps_spin_up",
+    "ratd.validation.lammps_single",
 )
 
 

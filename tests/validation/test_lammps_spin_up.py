@@ -107,7 +107,7 @@ def test_a_grain_that_breaks_at_the_first_omega_is_driven_from_a_lower_one():
     state = relax(grain)
     # a cut of the grain cannot hold at 1.8 times this
     unit = 2.0 * cut_bound(grain)
-    held = large._driven_from_below(lambda: large.InRatd(state, 0.125), unit, 0.9)
+    held = large.driven_from_below(lambda: large.InRatd(state, 0.125), unit, 0.9)
     assert held[0, 3] == 1.0 and held[0, 0] < 0.9 * unit
     low, high = threshold(held[:, 0], held[:, 3], 0.75)
     assert high == pytest.approx(low * large.STEP)

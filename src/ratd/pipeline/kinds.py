@@ -46,6 +46,7 @@ HOMES = {
     ),
     "collision_likeness": "ratd.experiments.collision.likeness",
     "lammps_spin_up": "ratd.validation.lammps_spin_up",
+    "lammps_single": "ratd.validation.lammps_single",
     **{
         f"validation_{check}": f"ratd.validation.{check}"
         for check in (

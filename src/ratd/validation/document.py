@@ -16,7 +16,14 @@ from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
 from ratd.pipeline.documents import command, fill
-from ratd.validation import figures, findings, lammps_findings, lammps_spin_up, quasi_static_document
+from ratd.validation import (
+    figures,
+    findings,
+    lammps_findings,
+    lammps_single,
+    lammps_spin_up,
+    quasi_static_document,
+)
 from ratd.validation.tables import CASE, as_dataset
 
 __all__ = ["collect", "main", "read_data", "redraw", "values"]
@@ -135,6 +142,8 @@ def read_data(folder="."):
     data = Path(folder, DATA)
     tables = {check: io.read(data / f"{check}.nc", f"validation_{check}").to_dataframe() for check in CHECKS}
     tables["lammps_spin_up"] = lammps_spin_up.thresholds(Path(folder, lammps_spin_up.DATA), tables["lammps"])
+    one_each = lammps_spin_up.one_each(tables["lammps_spin_up"])
+    tables["lammps_single"] = lammps_single.beside(Path(folder, lammps_single.DATA), one_each)
     scheme = Path(folder, quasi_static_document.DATA)
     return (
         tables
@@ -150,6 +159,7 @@ def values(tables):
         of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
         found |= of(tables[check])
     found |= lammps_spin_up.findings(tables["lammps_spin_up"])
+    found |= lammps_single.findings(tables["lammps_single"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
     found |= {f"scheme.{name}": value for name, value in scheme.items()}
     worst = max(scheme[f"worst {mark}"].value for mark in ("omega_first_loss", "omega_mass_75"))
@@ -176,6 +186,7 @@ def numbers(tables):
         "pull_off": pairs,
         "lammps": lammps_findings.thresholds(tables["lammps"]),
         "lammps_spin_up": lammps_spin_up.one_each(tables["lammps_spin_up"]),
+        "lammps_single": tables["lammps_single"],
         "growth": pd.DataFrame(findings.grown(tables["growth"])),
         "migration": pd.DataFrame(findings.migrations(tables["growth"])),
         "energy": findings.balances(tables["energy"]),

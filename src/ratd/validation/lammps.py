@@ -89,13 +89,16 @@ class InRatd:
     Parameters
     ----------
     state : State
-        Of `ratd.experiments.relax.relax`; it is copied.
+        At rest, such as `ratd.experiments.relax.relax` leaves it; it is copied.
     timestep_factor : float
         f of Eq. 31.
+    law : part, optional
+        That of the state; `ratd.laws.jkr` when not given.
     """
 
-    def __init__(self, state, timestep_factor):
+    def __init__(self, state, timestep_factor, law=None):
         self._state = copied(state)
+        self._law = jkr() if law is None else law
         self._integrator = leapfrog(timestep_factor=timestep_factor)
         self._omega = 0.0
         self._mass = monomer_rows(self._state)[:, MASS].sum()
@@ -118,7 +121,7 @@ class InRatd:
     def advance(self, duration):
         """Integrate for `duration` [s]."""
         end = until(time=self._state.scalar[TIME] + duration)
-        self._state, _ = run(self._state, jkr(), free(), open_space(), self._integrator, end)
+        self._state, _ = run(self._state, self._law, free(), open_space(), self._integrator, end)
 
     def unwind(self):
         """Make the largest fragment turn with the sum of all `turn` again, as the outer torque of `prescribed` does."""

@@ -42,7 +42,10 @@ from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driv
 from ratd.validation.lammps_findings import of_each
 from ratd.validation.plan import Checks
 
-__all__ = ["CONTROLS", "DATA", "KIND", "LARGE", "both", "findings", "main", "one_each", "spun", "tasks", "thresholds"]
+__all__ = [
+    "CONTROLS", "DATA", "KIND", "LARGE", "both", "driven_from_below", "findings", "main", "of_check", "one_each",
+    "spun", "tables_of", "tasks", "thresholds",
+]  # fmt: skip
 
 CONFIG = ("config/validation.yaml",)
 DATA = "docs/validation/data/lammps_spin_up"
@@ -127,19 +130,10 @@ def tasks(plan, data):
     list of ratd.pipeline.queue.Task
     """
     source = source_hash(modules=["ratd.validation.lammps_spin_up"])
-    own = plan.config[EXTENT]["lammps"]
-    of_check = [
-        (own["material"], grains["type"], grains["size_nm"], seed)
-        for grains in own["grains"]
-        for seed in range(grains["seeds"])
-    ]
-    wanted = list(dict.fromkeys((*of_check, *CONTROLS, *LARGE)))
+    timestep_factor = plan.config[EXTENT]["lammps"]["timestep_factor"]
+    wanted = list(dict.fromkeys((*of_check(plan), *CONTROLS, *LARGE)))
     settings = {"step": STEP, "rotations": ROTATIONS, "first": FIRST, "classes": CLASSES}
-    settings["timestep_factor"] = own["timestep_factor"]
-    tables = {
-        pair: Table(Path(data, "_".join(pair) + ".nc"), KIND, ("a_eff", "seed"), MATERIALS[pair[0]], settings)
-        for pair in dict.fromkeys(grain[:2] for grain in wanted)
-    }
+    tables = tables_of(wanted, data, KIND, settings | {"timestep_factor": timestep_factor})
     return [
         Task(
             tables[grain[:2]],
@@ -147,7 +141,7 @@ def tasks(plan, data):
             partial(
                 spun,
                 *grain,
-                own["timestep_factor"],
+                timestep_factor,
                 grain in (*CONTROLS, *LARGE),
                 source,
                 Path(plan.results, "lammps_spin_up", "_".join(map(str, grain))),
@@ -155,6 +149,40 @@ def tasks(plan, data):
         )
         for grain in wanted
     ]
+
+
+def of_check(plan):
+    """Material, type, size [nm] and seed of the grains of the check against LAMMPS."""
+    own = plan.config[EXTENT]["lammps"]
+    return [
+        (own["material"], grains["type"], grains["size_nm"], seed)
+        for grains in own["grains"]
+        for seed in range(grains["seeds"])
+    ]
+
+
+def tables_of(wanted, data, kind, settings):
+    """Material and type of grains -> the table with their rows.
+
+    Parameters
+    ----------
+    wanted : list of tuple
+        Material, type, size and seed of each.
+    data : path-like
+        Folder of the tables.
+    kind : str
+        Of the files.
+    settings : dict
+        What the rows depend on.
+
+    Returns
+    -------
+    dict of tuple to ratd.pipeline.queue.Table
+    """
+    return {
+        pair: Table(Path(data, "_".join(pair) + ".nc"), kind, ("a_eff", "seed"), MATERIALS[pair[0]], settings)
+        for pair in dict.fromkeys(grain[:2] for grain in wanted)
+    }
 
 
 def spun(material, kind, size, seed, timestep_factor, drive, source="", checkpoint=None):
@@ -239,14 +267,26 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoi
     for code, make in makers.items():
         with make() as example:
             timestep = example.timestep
-        held = _driven_from_below(make, unit, first, kept[code])
+        held = driven_from_below(make, unit, first, kept[code])
         number = np.full(len(held), CODES.index(code))
         parts.append((number, held[:, 0], held[:, 3], np.full(len(held), timestep)))
     return dict(zip(_HOLD, map(np.concatenate, zip(*parts, strict=True)), strict=True))
 
 
-def _driven_from_below(make, unit, first, checkpoint=None):
-    """Holds of `driven`, the first of which the grain survives whole."""
+def driven_from_below(make, unit, first, checkpoint=None):
+    """Holds of `ratd.validation.lammps.driven` in steps of `STEP`, the first of which the grain survives whole.
+
+    Parameters
+    ----------
+    make, unit, checkpoint
+        See there.
+    first : float
+        First omega that is looked at, over `unit`; `FIRST` times as much where a grain has lost mass there already.
+
+    Returns
+    -------
+    (k, 4) array
+    """
     while True:
         # a checkpoint belongs to one start
         own = None if checkpoint is None else f"{checkpoint}_{first:.3g}"

@@ -11,7 +11,7 @@ from ratd.base.errors import FileError
 from ratd.base.measured import Measured
 from ratd.experiments.spin_up import document
 from ratd.experiments.spin_up.figures.law import law
-from ratd.experiments.spin_up.findings.beside import composition_tables, of_pairs, recomputed
+from ratd.experiments.spin_up.findings.beside import composition_tables, of_lammps, of_pairs, recomputed
 from ratd.experiments.spin_up.findings.claims import all_of, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
 from ratd.pictures.style import save
@@ -127,3 +127,15 @@ def test_the_tables_of_the_materials_show_used_and_printed():
     tables = composition_tables()
     assert "| q-S | 20 (20) | 54 (54) | 0.17 (0.17) | 2650 (2650) |" in tables["table2"]
     assert "| Mg/O | 0.228 | 0.23 |" in tables["table1"]
+
+
+def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
+    ways = pd.DataFrame({"way": ["driven"], "mark": ["first loss"], "ratio": [1.1], "a_eff": [1e-7], "type": ["BA"]})
+    medians = {"ratd": (0.9, 1.2, np.nan), "limits of LAMMPS": (1.0, 1.1, 0.86)}
+    starts = [
+        {"limits": law, "mark": "first loss", "median": median} for law, found in medians.items() for median in found
+    ]
+    found = of_lammps(ways, ways.assign(way="default"), pd.DataFrame(starts))
+    assert found["lammps.starts ratd first loss grains"] == 2 and found["lammps.starts ratd first loss near"] == 1
+    assert found["lammps.starts limits of LAMMPS first loss near"] == 3
+    assert found["lammps.default first loss range"] == "1.10 to 1.10"

@@ -66,7 +66,11 @@ TABLE_COLUMNS = (
     "material", "type", "a_eff", "seed", "n_monomers", "n_contacts", "filling_factor", "mean_monomer_radius",
     "cut_bound", "omega_first_loss", "omega_mass_75", "omega_disr",
 )  # fmt: skip
-LAMMPS = {"driven": "validation/data/tables/lammps.csv", "default": "validation/data/tables/lammps_spin_up.csv"}
+LAMMPS = {
+    "driven": "validation/data/tables/lammps.csv",
+    "default": "validation/data/tables/lammps_spin_up.csv",
+    "starts": "validation/data/tables/lammps_single.csv",
+}
 """Spin-up of ratd beside LAMMPS -> table below docs, written with docs/validation.md."""
 MARK_RULES = "validation/data/mark_rules.nc"
 """omega_disr by other rules, below docs, taken there by ``python -m ratd.validation.document collect``."""

@@ -32,6 +32,8 @@ PAIR_RADII = (10 * NM, 100 * NM)
 """The smallest and the largest monomers of Fig. 10."""
 PAIR_SHARE = 0.8 / 2.8
 """Share of their own moments of inertia, 2/5 m a^2 each, in that of two touching spheres, m a^2 each besides."""
+NEAR_LAMMPS = 0.15
+"""Part by which single grains may be off those in LAMMPS."""
 
 
 def of_ways(table):
@@ -117,7 +119,7 @@ def recomputed(older, newer):
     return {"check.n": len(pairs), "check.ratio": median(pairs[MARK] / pairs[f"{MARK}_older"])}
 
 
-def of_lammps(driven, default):
+def of_lammps(driven, default, starts):
     """LAMMPS over ratd, medians over grains, from the tables of docs/validation.md.
 
     Parameters
@@ -126,12 +128,20 @@ def of_lammps(driven, default):
         Grains that both codes turn in some ways.
     default : pandas.DataFrame
         Grains that LAMMPS drives, beside their spin-up that waits in ratd.
+    starts : pandas.DataFrame
+        The same beside runs of ratd from several starts that do not wait, with either sort of ``limits``: LAMMPS over
+        the ``median`` of the starts.
 
     Returns
     -------
     dict
     """
-    values = {}
+    values = {"lammps.near": NEAR_LAMMPS}
+    for (limits, mark), part in starts.dropna(subset="median").groupby(["limits", "mark"]):
+        values |= {
+            f"lammps.starts {limits} {mark} grains": len(part),
+            f"lammps.starts {limits} {mark} near": int(((part["median"] - 1.0).abs() <= NEAR_LAMMPS).sum()),
+        }
     for (way, mark), part in pd.concat([driven, default]).dropna(subset="ratio").groupby(["way", "mark"]):
         values |= {
             f"lammps.{way} {mark}": median(part["ratio"]),
