@@ -61,6 +61,14 @@ def test_a_number_that_changes_flips_the_verdict_on_it(values):
     assert values["short_steps"] == findings(loose, None, None)["short_steps"] == "less than a tenth"
     loose["short_16384"] = loose["short_16384"].assign(pressure=1.1 * loose["short_16384"]["pressure"])
     assert findings(loose, None, None)["short_steps"] == "a tenth or more"
+    loose["loose_16384"] = sets["loose_16384"]
+    assert values["slow_enough"] == findings(loose, None, None)["slow_enough"] == "the same"
+    assert values["loose_line"] == "below"
+    loose["loose_16384"] = sets["loose_16384"].assign(pressure=4.0 * sets["loose_16384"]["pressure"])
+    found = findings(loose, None, None)
+    assert found["slow_enough"] == "another" and found["loose_line"] == "not below"
+    small = sets["n_1024"].assign(pressure=sets["n_1024"]["pressure"] / sets["n_1024"]["phi"])
+    assert findings({"base": sets["base"], "n_16384": small}, None, None)["exponent"] == "differs"
 
 
 def test_it_lies_where_an_independent_code_finds_it(values):

@@ -68,16 +68,17 @@ PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
 SMALL = "n_1024"
 """The set of small clusters that go to high filling factors; damping and rolling displacements are varied there."""
-FURTHER = "further_16384"
-"""The set of the paper's size that goes through all of the range of the fit, but no further."""
 HIGH = "high_16384"
 """The set that high filling factors are told of."""
 LOOSE = {
+    "loose_16384": ("n_16384", 0.0055, 0.009),
     "slow_16384": ("n_16384", 0.0055, 0.009),
     "short_16384": ("slow_16384", 0.0055, 0.009),
     "explicit_16384": ("n_16384", 0.008, 0.019),
 }
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
+SLOWEST = ("slow_16384", "loose_16384")
+"""The slowest squeeze of loose clusters, and the next one."""
 BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the base set."""
 
@@ -161,16 +162,6 @@ def _solved(pressure, rolling_pressure):
 
 def _several(fit):
     return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
-
-
-def of_paper_size(tables):
-    """Where P crosses P_0 phi^3, and its ratio to it at 0.07 and 0.1, of all clusters of sets that share none."""
-    each = [table.isel(seed_number=[k]) for table in tables for k in range(table.sizes["seed_number"])]
-    found = {"n": len(each), "crosses": Measured(*mean_of([crosses_line(one, 0.13).value[0] for one in each]))}
-    for phi in (0.07, 0.1):
-        found[f"ratio_{phi:g}"] = Measured(*mean_of([ratio_at(one, phi).value[0] for one in each]))
-        found[f"pressure_{phi:g}"] = found[f"ratio_{phi:g}"].value * tables[0]["rolling_pressure"].values[0] * phi**3
-    return {f"all_16384.{name}": value for name, value in found.items()}
 
 
 def of_monomers(equal, tables):
@@ -303,6 +294,10 @@ def of_pairs(sets):
                     found[f"{name}.over_{phi:g}"] = _several(ratio)[0]
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
                 found[f"{name}.steeper_low"] = _several(compared(sets[name], sets[beside], *LOW_RANGE))[1]
+    if set(SLOWEST) <= set(sets):
+        for phi in (0.005, 0.01, 0.02, 0.03):
+            ratio = compared(*(sets[name] for name in SLOWEST), phi / NEAR, phi * NEAR)
+            found[f"{SLOWEST[0]}.over_next_{phi:g}"] = _several(ratio)[0]
     for name, larger in itertools.pairwise(BY_SIZE):
         if {name, larger} <= set(sets):
             found |= _by_size(sets, name, larger, (0.01, 0.02, 0.03, 0.05))
@@ -339,13 +334,13 @@ def _bin_at(table, phi):
 def verdicts(values, sets):
     """Words on which sentences of the document rest."""
     found = {}
-    for name, phi in ((BY_SIZE[-1], 0.03), ("all_16384", 0.1), (HIGH, 0.3)):
+    for name, phi in ((BY_SIZE[-1], 0.03), (BY_SIZE[-1], 0.1), (HIGH, 0.3)):
         if f"{name}.ratio_{phi:g}" in values:
             ratio = values[f"{name}.ratio_{phi:g}"].value
             found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
-    exponent = values["base.exponent"]
-    steeper = exponent.value - 3.0
-    found["exponent"] = "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
+    exponents = [values[f"{name}.exponent"] for name in ("base", BY_SIZE[-1]) if f"{name}.exponent" in values]
+    words = {_beside_3(exponent) for exponent in exponents}
+    found["exponent"] = words.pop() if len(words) == 1 else "differs"
     for name, phi in (("base", 0.1), (HIGH, 0.48)):
         if f"{name}.rolling_{phi:g}" in values:
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
@@ -363,6 +358,11 @@ def verdicts(values, sets):
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
+    if "slow_16384.over_next_0.01" in values:
+        at = values["loose_16384.ratio_0.01"]
+        found["loose_line"] = "below" if at.value + 2.0 * at.error < 1.0 else "not below"
+        over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
+        found["slow_enough"] = "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in over) else "another"
     if "short_16384.over_0.01" in values:
         off = max(abs(values[f"short_16384.over_{phi}"].value - 1.0) for phi in (0.005, 0.01))
         found["short_steps"] = "less than a tenth" if off < 0.1 else "a tenth or more"
@@ -378,6 +378,12 @@ def verdicts(values, sets):
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
+
+
+def _beside_3(exponent):
+    """Where an exponent lies beside the printed one."""
+    steeper = exponent.value - 3.0
+    return "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
 
 
 def _same(values, name, beside):
@@ -417,9 +423,9 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         values |= of_set(name, table)
     values |= of_pairs(sets)
     values |= worst_balance(sets, values)
-    if {FURTHER, HIGH} <= set(sets):
-        values |= of_paper_size([sets[FURTHER], sets[HIGH]])
-        values[f"{HIGH}.over_further"] = quotient(values[f"{HIGH}.ratio_0.1"], values[f"{FURTHER}.ratio_0.1"])
+    both = [f"{name}.ratio_0.1" for name in (HIGH, BY_SIZE[-1])]
+    if set(both) <= set(values):
+        values[f"{HIGH}.over_all"] = quotient(*(values[name] for name in both))
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:

@@ -41,7 +41,7 @@ def looser(tables):
             axes.plot(mark, np.interp(mark, phi, value), "o", color=COLOURS[k % 5], ms=4.5, zorder=3)
     axes.plot([], [], "o", color="black", ms=4.5, label=f"faces at {MACH:g} times the speed of sound")
     axes.axhline(1.0, color="black", lw=0.8, label=r"$P_0\phi^3$, printed")
-    axes.set(xscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=LOOSE, ylim=(0.0, 1.75))
+    axes.set(xscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=LOOSE, ylim=(0.0, 2.0))
     axes.set_yticks(np.arange(0.0, 1.1, 0.2))
     logarithmic(axes.xaxis, labelled=(2, 5))
     axes.legend(loc="upper left")
