@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.errors import FileError
+from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
@@ -166,7 +167,7 @@ def values(tables):
     found["scheme.verdict"] = "met" if worst < findings.SHIFTED else "open"
     found["scheme.all verdict"] = "met" if scheme["classes"] == scheme["all classes"] else "open"
     found["scheme.DMT over JKR"] = np.sqrt(4.0 / 3.0)
-    found |= {"limit.near": lammps_findings.NEAR, "limit.force": lammps_findings.FORCE}
+    found |= {"limit.near": NEAR_LAMMPS, "limit.force": lammps_findings.FORCE}
     return found | findings.limits()
 
 

@@ -5,15 +5,16 @@ import pandas as pd
 
 from ratd.base.measured import median
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
+from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS
 from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, styled
 from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, GRAIN, MARKS, TURNING, threshold
 
-__all__ = ["beside", "of_each", "of_lammps", "thresholds"]
+__all__ = ["SHORT", "beside", "of_each", "of_lammps", "thresholds"]
 
 FORCE = 1e-9
 """Difference of the normal forces over F_C."""
-NEAR = 0.15
-"""Part by which a threshold of one code may be off that of the other; neighbouring omega differ by 4 %."""
+SHORT = {"first loss": "first", "25 % of the mass": "quarter"}
+"""Mark of `MARKS` -> as it stands in a slot."""
 WAYS = {
     ("rotation", "sudden", "LAMMPS"): "sudden",
     ("rotation", "sudden", TURNING): "sudden turning",
@@ -90,7 +91,7 @@ def of_lammps(table):
     monomers = table.loc[table["study"] != "force", "n_monomers"]
     values["lammps.fewest"], values["lammps.most"] = int(monomers.min()), int(monomers.max())
     for (way, mark), part in found.groupby(["way", "mark"]):
-        name = f"lammps.{way} {'first' if mark == 'first loss' else 'quarter'}"
+        name = f"lammps.{way} {SHORT[mark]}"
         ratio = part["ratio"].dropna()
         values |= {name: median(ratio)} | of_each(name, ratio)
     return values
@@ -98,7 +99,7 @@ def of_lammps(table):
 
 def of_each(name, ratio):
     """Slots on the single grains of a way and mark: ``NAME least``, ``most``, ``known``, ``within`` and ``verdict``."""
-    within = int((np.abs(ratio - 1.0) <= NEAR).sum())
+    within = int((np.abs(ratio - 1.0) <= NEAR_LAMMPS).sum())
     return {
         f"{name} least": ratio.min(),
         f"{name} most": ratio.max(),
@@ -131,7 +132,7 @@ def beside(table, default):
     for axes, (mark, title) in zip(
         panels, zip(MARKS, ("first loss of mass", "a quarter lost"), strict=True), strict=True
     ):
-        axes.axhspan(1 - NEAR, 1 + NEAR, color="0.92", zorder=0)
+        axes.axhspan(1 - NEAR_LAMMPS, 1 + NEAR_LAMMPS, color="0.92", zorder=0)
         axes.axhline(1.0, color=GREY, linewidth=0.6, zorder=1)
         for place, way in enumerate(SHOWN):
             own = found[(found["way"] == way) & (found["mark"] == mark)]

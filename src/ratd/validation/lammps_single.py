@@ -26,8 +26,8 @@ from ratd.engine.layout import RADIUS, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
 from ratd.experiments.relax import relax
-from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.cut_bound import cut_bound
+from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.geometry.box import open_space
@@ -39,8 +39,17 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Task, command, key
 from ratd.validation.lammps import FIRST_OMEGA, GRAIN, MARKS, InRatd, driven, threshold
-from ratd.validation.lammps_findings import NEAR
-from ratd.validation.lammps_spin_up import CONFIG, EXTENT, FIRST, LARGE, driven_from_below, of_check, tables_of
+from ratd.validation.lammps_findings import SHORT
+from ratd.validation.lammps_spin_up import (
+    CONFIG,
+    EXTENT,
+    FIRST,
+    HELD,
+    LARGE,
+    driven_from_below,
+    grains_of_check,
+    tables_of,
+)
 from ratd.validation.plan import Checks
 
 __all__ = ["DATA", "KIND", "LAWS", "STARTS", "beside", "findings", "from_starts", "main", "one", "tasks"]
@@ -53,8 +62,6 @@ LAWS = {"ratd": jkr(), "limits of LAMMPS": jkr_as_in_lammps()}
 STARTS = 6
 SHIFT = 1e-12
 """Standard deviation [m] of what a monomer is moved by along each axis."""
-_SHORT = {"first loss": "first", "25 % of the mass": "quarter"}
-"""Mark of `MARKS` as it stands in a slot."""
 _SLOT = {"ratd": "own", "limits of LAMMPS": "limits"}
 
 KIND = register(
@@ -71,13 +78,7 @@ KIND = register(
             **row_sizes(("hold",)),
             "law": Variable(("hold",), "i1", "", "whose limits", flags=tuple(LAWS)),
             **over(("hold",), {"start": ("1", "number of the start")}, dtype="i8"),
-            **over(
-                ("hold",),
-                {
-                    "omega": ("rad s-1", "angular velocity that was held"),
-                    "mass_left": ("1", "mass of the largest fragment over that of the grain at its end"),
-                },
-            ),
+            **HELD,
         },
         attributes=("material", "type"),
         ragged=("hold",),
@@ -102,7 +103,7 @@ def tasks(plan, data):
     own = plan.config[EXTENT]["lammps"]
     steps = {"timestep_factor": own["timestep_factor"], "step": own["step"], "rotations": own["rotations"]["driven"]}
     large = [grain for grain in LARGE if grain[2] <= LARGEST]
-    wanted = list(dict.fromkeys((*of_check(plan), *large)))
+    wanted = list(dict.fromkeys((*grains_of_check(plan), *large)))
     tables = tables_of(wanted, data, KIND, {**steps, "first": FIRST_OMEGA, "starts": STARTS, "shift": SHIFT})
     return [
         Task(
@@ -216,20 +217,22 @@ def beside(folder, one_each):
     InputError
         If there is no grain, or one that LAMMPS has not driven.
     """
-    theirs = one_each.set_index([one_each[name] if name != "a_eff" else size_key(one_each[name]) for name in GRAIN])
+    theirs = {
+        (each.material, each.type, *key(each.a_eff, each.seed), each.mark): each.LAMMPS
+        for each in one_each.itertuples()
+    }
     found = []
     for path in sorted(Path(folder).glob("*.nc")):
         file = io.read(path, KIND)
         for row in rows(file, KIND):
             grain = {**row.attrs, **{name: row[name].item() for name in ("a_eff", "seed", "n_monomers")}}
-            name = tuple(size_key(pd.Series([grain[each]]))[0] if each == "a_eff" else grain[each] for each in GRAIN)
-            if name not in theirs.index:
+            name = (grain["material"], grain["type"], *key(grain["a_eff"], grain["seed"]))
+            if any((*name, mark) not in theirs for mark in MARKS):
                 raise InputError(f"{path}: LAMMPS has not driven {' '.join(map(str, name))}.")
-            marks = theirs.loc[[name]].set_index("mark")["LAMMPS"]
             for mark, limit in MARKS.items():
                 for law, omega in _middles(row, limit).items():
                     # NaN where a start has no threshold
-                    ratio = marks[mark] / omega
+                    ratio = theirs[*name, mark] / omega
                     nearest = ratio[np.argmin(np.abs(ratio - 1.0))]
                     spread = (ratio.min(), np.median(ratio), ratio.max(), nearest)
                     found.append(
@@ -254,21 +257,21 @@ def findings(table):
     -------
     dict
         Slots ``lammps_single.LAW MARK ...`` with LAW ``own`` or ``limits``, MARK ``first`` or ``quarter``: ``known``,
-        grains that have one in both codes; ``near``, those of them in which LAMMPS is within
-        `ratd.validation.lammps_findings.NEAR` of the median of the starts; ``reached``, within that of one of them;
+        grains that have one in both codes; ``near``, those of them in which LAMMPS is within `NEAR_LAMMPS` of the
+        median of the starts; ``reached``, within that of one of them;
         ``least`` and ``most``, LAMMPS over the median; ``spread``, the greatest ratio of two starts of one grain.
         ``starts`` is their number; ``verdict``, whether all are near at both marks with the limits of LAMMPS.
     """
     values = {"lammps_single.grains": len(table.drop_duplicates(GRAIN)), "lammps_single.starts": STARTS}
     for (law, mark), part in table.dropna(subset=["median"]).groupby(["limits", "mark"]):
-        slot = f"lammps_single.{_SLOT[law]} {_SHORT[mark]}"
+        slot = f"lammps_single.{_SLOT[law]} {SHORT[mark]}"
         values[f"{slot} known"] = len(part)
         for name, column in (("near", "median"), ("reached", "nearest")):
-            values[f"{slot} {name}"] = int(((part[column] - 1.0).abs() <= NEAR).sum())
+            values[f"{slot} {name}"] = int(((part[column] - 1.0).abs() <= NEAR_LAMMPS).sum())
         values[f"{slot} least"], values[f"{slot} most"] = part["median"].min(), part["median"].max()
         values[f"{slot} spread"] = (part["most"] / part["least"]).max()
     limited = table[table["limits"] == "limits of LAMMPS"].dropna(subset="median")
-    near = ((limited["median"] - 1.0).abs() <= NEAR).all()
+    near = ((limited["median"] - 1.0).abs() <= NEAR_LAMMPS).all()
     return values | {"lammps_single.verdict": "met" if near else "open"}
 
 

@@ -39,12 +39,12 @@ from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 from ratd.validation import peer_lammps
 from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driven, threshold
-from ratd.validation.lammps_findings import of_each
+from ratd.validation.lammps_findings import SHORT, of_each
 from ratd.validation.plan import Checks
 
 __all__ = [
-    "CONTROLS", "DATA", "KIND", "LARGE", "both", "driven_from_below", "findings", "main", "of_check", "one_each",
-    "spun", "tables_of", "tasks", "thresholds",
+    "CONTROLS", "DATA", "HELD", "KIND", "LARGE", "both", "driven_from_below", "findings", "grains_of_check", "main",
+    "one_each", "spun", "tables_of", "tasks", "thresholds",
 ]  # fmt: skip
 
 CONFIG = ("config/validation.yaml",)
@@ -71,9 +71,15 @@ CODES = ("ratd", "LAMMPS")
 _HOLD = ("code", "omega", "mass_left", "timestep")
 _OMEGA = {"first loss": "omega_first_loss", "25 % of the mass": "omega_mass_75"}
 """Mark of `MARKS` -> the same of a spin-up."""
-_SHORT = {"first loss": "first", "25 % of the mass": "quarter"}
-"""... and as it stands in a slot."""
 
+HELD = over(
+    ("hold",),
+    {
+        "omega": ("rad s-1", "angular velocity that was held"),
+        "mass_left": ("1", "mass of the largest fragment over that of the grain at its end"),
+    },
+)
+"""Variables of a file: what was held, and what came of it."""
 KIND = register(
     "lammps_spin_up",
     Kind(
@@ -101,14 +107,8 @@ KIND = register(
             "source": Variable((ROW,), "str", "", "hash of the source"),
             **row_sizes(("hold",)),
             "code": Variable(("hold",), "i1", "", "who drives", flags=CODES),
-            **over(
-                ("hold",),
-                {
-                    "omega": ("rad s-1", "angular velocity that was held"),
-                    "mass_left": ("1", "mass of the largest fragment over that of the grain at its end"),
-                    "timestep": ("s", "time step"),
-                },
-            ),
+            **HELD,
+            **over(("hold",), {"timestep": ("s", "time step")}),
         },
         attributes=("material", "type"),
         ragged=("hold",),
@@ -131,7 +131,7 @@ def tasks(plan, data):
     """
     source = source_hash(modules=["ratd.validation.lammps_spin_up"])
     timestep_factor = plan.config[EXTENT]["lammps"]["timestep_factor"]
-    wanted = list(dict.fromkeys((*of_check(plan), *CONTROLS, *LARGE)))
+    wanted = list(dict.fromkeys((*grains_of_check(plan), *CONTROLS, *LARGE)))
     settings = {"step": STEP, "rotations": ROTATIONS, "first": FIRST, "classes": CLASSES}
     tables = tables_of(wanted, data, KIND, settings | {"timestep_factor": timestep_factor})
     return [
@@ -151,7 +151,7 @@ def tasks(plan, data):
     ]
 
 
-def of_check(plan):
+def grains_of_check(plan):
     """Material, type, size [nm] and seed of the grains of the check against LAMMPS."""
     own = plan.config[EXTENT]["lammps"]
     return [
@@ -403,7 +403,7 @@ def findings(table):
     groups = {"all": one}
     for column in ("type", "size", "material"):
         groups |= {name: one[one[column] == name] for name in one[column].drop_duplicates()}
-    for mark, short in _SHORT.items():
+    for mark, short in SHORT.items():
         for name, group in groups.items():
             own = group[group["mark"] == mark]
             slot = f"lammps_spin_up.{name} {short}"
