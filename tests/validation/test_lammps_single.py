@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 import ratd
+from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.engine.layout import X
 from ratd.engine.state import monomer_rows
@@ -121,3 +122,12 @@ def test_the_queue_has_all_grains_but_those_that_take_hours(tmp_path):
     of_check = sum(grains["seeds"] for grains in plan.config["full"]["lammps"]["grains"])
     assert len(wanted) == of_check + len([grain for grain in LARGE if grain[2] <= single.LARGEST])
     assert sum(task.make.keywords["large"] for task in wanted) == len(wanted) - of_check
+
+
+@pytest.mark.parametrize("name", ["STEP", "ROTATIONS", "FIRST", "STARTS", "SHIFT"])
+def test_rows_made_in_other_steps_are_refused(file, name, monkeypatch):
+    folder, _ = file
+    single.tasks(Checks(CONFIG), folder)
+    monkeypatch.setattr(single, name, getattr(single, name) * 2)
+    with pytest.raises(InputError, match="other settings"):
+        single.tasks(Checks(CONFIG), folder)

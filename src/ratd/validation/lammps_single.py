@@ -46,6 +46,8 @@ from ratd.validation.lammps_spin_up import (
     FIRST,
     HELD,
     LARGE,
+    ROTATIONS,
+    STEP,
     driven_from_below,
     grains_of_check,
     tables_of,
@@ -104,7 +106,7 @@ def tasks(plan, data):
     steps = {"timestep_factor": own["timestep_factor"], "step": own["step"], "rotations": own["rotations"]["driven"]}
     large = [grain for grain in LARGE if grain[2] <= LARGEST]
     wanted = list(dict.fromkeys((*grains_of_check(plan), *large)))
-    tables = tables_of(wanted, data, KIND, {**steps, "first": FIRST_OMEGA, "starts": STARTS, "shift": SHIFT})
+    tables = tables_of(wanted, data, KIND, _settings(steps))
     return [
         Task(
             tables[grain[:2]],
@@ -113,6 +115,12 @@ def tasks(plan, data):
         )
         for grain in wanted
     ]
+
+
+def _settings(steps):
+    """What all rows depend on: the large ones are driven in steps of their own."""
+    large = {"step": STEP, "rotations": ROTATIONS, "first": FIRST}
+    return {**steps, "first": FIRST_OMEGA, "large": large, "starts": STARTS, "shift": SHIFT}
 
 
 def one(material, kind, size, seed, *, timestep_factor, step, rotations, large, source=""):
