@@ -101,7 +101,7 @@ def test_figure5_takes_the_nearest_snapshots_and_says_which():
     run, mark = run_with_snapshots(), xr.Dataset({"omega_disr": 1.02e8})
     assert nearest_snapshots(run, 1.02e8) == [0, 2, 3]
     text = words(figure5(run, mark))
-    assert "= 0.78" in text and "= 0.98" in text and "driven" in text and "farther" not in text
+    assert "= 0.78" in text and "= 0.98" in text and "driven" in text and "flew off" not in text
     assert "moved since" in text and text.count("in one piece") == 3 and "67 % in one piece" in text
 
 

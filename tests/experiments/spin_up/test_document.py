@@ -6,13 +6,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import ratd
 from pictures_alike import ALIKE, difference, unlike
 from ratd.base.errors import FileError
 from ratd.base.measured import Measured
 from ratd.experiments.spin_up import document
 from ratd.experiments.spin_up.figures.law import law
-from ratd.experiments.spin_up.findings.beside import composition_tables, of_lammps, of_pairs, recomputed
-from ratd.experiments.spin_up.findings.claims import all_of, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings.beside import (
+    composition_tables,
+    of_heat,
+    of_lammps,
+    of_pairs,
+    of_ways,
+    recomputed,
+)
+from ratd.experiments.spin_up.findings.claims import all_of, claims, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
 from ratd.pictures.style import save
 
@@ -121,6 +129,7 @@ def test_grains_that_were_computed_anew_are_compared_with_themselves():
     newer = grains(lambda kind, nm: 1.01e8, sizes=(300,))
     values = recomputed(older, newer)
     assert values["check.n"] == 9 and values["check.ratio"].value == pytest.approx(1.01)
+    assert values["check.range"] == "1.010 to 1.010"
 
 
 def test_the_tables_of_the_materials_show_used_and_printed():
@@ -139,3 +148,67 @@ def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
     assert found["lammps.starts ratd first loss grains"] == 2 and found["lammps.starts ratd first loss near"] == 1
     assert found["lammps.starts limits of LAMMPS first loss near"] == 3
     assert found["lammps.default first loss range"] == "1.10 to 1.10"
+
+
+def test_the_largest_grains_beside_lammps_are_told_one_by_one():
+    rows = [("BA", 1e-7, 0.9), ("BA", 3e-7, 0.85), ("BAM1", 3e-7, 1.2), ("BAM2", 3e-7, np.nan)]
+    default = pd.DataFrame(rows, columns=["type", "a_eff", "ratio"]).assign(way="default", mark="25 % of the mass")
+    starts = pd.DataFrame({"limits": ["ratd"], "mark": ["first loss"], "median": [1.0]})
+    found = of_lammps(default.assign(way="driven"), default, starts)
+    assert {name: found[name] for name in found if "largest " in name and "nm" not in name and "%" not in name} == {
+        "lammps.largest BA": 0.85, "lammps.largest BAM1": 1.2
+    }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def data():
+    return document.read_data(ROOT / document.DATA)
+
+
+def told(data, **columns):
+    return claims("d", data.driven.assign(**columns), data.fragments[document.DRIVEN])
+
+
+def test_shapes_are_judged_by_what_grains_change(data):
+    axes = {axis: data.driven[f"axis_{axis}_start"] for axis in "abc"}
+    kept = told(data, **{f"axis_{axis}_disr": axes[axis] for axis in "abc"})
+    assert kept["d.oblate BA change"].value == 0.0 and kept["d.holds oblate BA"] == "no"
+    flat = told(data, axis_a_disr=1.0, axis_b_disr=2.0, axis_c_disr=2.0)
+    parts = ("BA", "BAM", "small BA")
+    assert [flat[f"d.holds oblate {part}"] for part in parts] == ["yes", "yes", "no"]
+    long = told(data, axis_a_disr=1.0, axis_b_disr=1.0, axis_c_disr=2.0)
+    assert [long[f"d.holds oblate {part}"] for part in parts] == ["no", "no", "yes"]
+    assert long["d.oblate BAM disr"].value == 0.0
+
+
+def test_a_quarter_is_at_omega_disr_by_the_median_of_a_type(data):
+    near = data.driven["omega_mass_75"] * np.where(data.driven["type"] == "BA", 1.5, 1.1)
+    found = told(data, omega_disr=near)
+    assert (found["d.holds quarter BA"], found["d.holds quarter BAM"]) == ("no", "yes")
+    assert found["d.disr over quarter BAM2"].value == pytest.approx(1.1)
+
+
+def test_grains_that_never_lose_a_quarter_have_it_in_a_monomer_or_a_pair(data):
+    """As the page says: a run ends with the last contact, and the largest fragment is then that monomer or pair."""
+    never = data.driven[data.driven["omega_mass_75"].isna()]
+    assert len(never) > 50
+    for row in never.itertuples():
+        grain = ratd.grow(row.type, row.a_eff, row.material, row.seed)
+        mass = grain.radius**3
+        assert mass[grain.contacts].sum(axis=1).max() > 0.75 * mass.sum(), row
+
+
+def test_the_rolling_limit_is_judged_at_all_its_values(data):
+    table = data.tables["parameters"]
+    found = of_ways(table.assign(omega_disr_ratio=1.0))
+    assert found["ways.holds xi"] == "yes" and found["ways.BA xi"].value == 1.0
+    moved = np.where(np.isclose(table["critical_rolling_displacement"], 1.6e-9, atol=0.0), 0.8, 1.0)
+    found = of_ways(table.assign(omega_disr_ratio=moved))
+    assert found["ways.holds xi"] == "no" and found["ways.BAM2 xi"].value == pytest.approx(0.8)
+    assert found["ways.holds viscous"] == "no"
+
+
+def test_grains_in_strong_light_are_beside_the_heat_that_parts_contacts():
+    assert of_heat(1e-7)["thermal.grain is"] == "below both"
+    warm = of_heat(1e-7, 1e6)
+    assert warm["thermal.grain"] == pytest.approx(164.0) and warm["thermal.grain is"] == "between the two"

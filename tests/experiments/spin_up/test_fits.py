@@ -15,7 +15,7 @@ from ratd.experiments.spin_up.eq33 import (
     radius_of_reading,
 )
 from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, fragment_shares, power_law
-from ratd.experiments.spin_up.oblateness import oblate_counts
+from ratd.experiments.spin_up.oblateness import oblate_change, oblate_counts
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, slopes
 from synthetic_runs import make_fragments, make_table
 
@@ -220,6 +220,17 @@ def test_oblate_grains_are_counted_at_both_times():
     row = oblate_counts(pd.DataFrame({"type": "BA", **axes})).iloc[0]
     assert (row["start_oblate"], row["start_known"]) == (1, 2)
     assert (row["disr_oblate"], row["disr_known"]) == (3, 3) and row["disr_low"] < 1
+
+
+def test_what_the_share_of_oblate_grains_gains_is_counted_grain_by_grain():
+    prolate, oblate, unknown = (1.0, 1.1, 2.0), (1.0, 2.0, 2.1), (1.0, 2.0, np.nan)
+    ways = [(prolate, oblate), (prolate, prolate), (oblate, oblate), (oblate, oblate), (unknown, oblate)]
+    names = [f"axis_{axis}_{when}" for when in ("start", "disr") for axis in "abc"]
+    table = pd.DataFrame([start + end for start, end in ways], columns=names)
+    table = table.assign(material="q-S", type="BA", a_eff=1e-7)
+    change, error = oblate_change(table)
+    assert change == pytest.approx(0.25) and error == pytest.approx(np.std([1, 0, 0, 0], ddof=1) / 2)
+    assert oblate_change(table[1:4]) == (0.0, 0.0)
 
 
 def test_shares_of_fragments():

@@ -20,6 +20,7 @@ from ratd.experiments.spin_up.radiation import (
     SEARCHED,
     Surroundings,
     destroyed_sizes,
+    dust_temperature,
     gas_damping_time,
     gas_drag,
     infrared_coefficient,
@@ -88,6 +89,17 @@ def test_infrared_damping_as_printed_and_from_absorption():
     assert infrared_damping(2e-7, 8.0) == pytest.approx(0.4 * 4.0 / 2.0)
     assert infrared_coefficient(0.8, 22.3) == pytest.approx(0.4, rel=0.15)
     assert 0.4 / infrared_coefficient(0.18, 16.4) == pytest.approx(2.2, abs=0.1)
+
+
+def test_dust_is_as_warm_as_sheds_what_it_takes():
+    """A grain that absorbs as the frequency squared, so that it emits as the integral of x^5/(exp x - 1) T^6."""
+
+    def emitted(temperature):
+        # in units of h/k: nu^2 B_nu
+        return quad(lambda nu: nu**5 / math.expm1(nu / temperature), 0.0, 60.0 * temperature)[0]
+
+    one, hundred = dust_temperature([1.0, 100.0])
+    assert one == pytest.approx(16.4) and emitted(hundred) / emitted(one) == pytest.approx(100.0)
 
 
 def test_spectrum_of_infrared_damping():

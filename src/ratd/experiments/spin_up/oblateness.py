@@ -6,7 +6,7 @@ import pandas as pd
 from ratd.base.statistics import binomial_interval, mean_of
 from ratd.experiments.spin_up.cells import cell_of
 
-__all__ = ["is_oblate", "oblate_counts", "oblate_share"]
+__all__ = ["is_oblate", "oblate_change", "oblate_counts", "oblate_share"]
 
 
 def is_oblate(a, b, c):
@@ -33,6 +33,25 @@ def oblate_share(table, when):
     """
     known, oblate = _shapes(table, when)
     return *mean_of(oblate[known], cell_of(table[known])), int(oblate.sum()), int(known.sum())
+
+
+def oblate_change(table):
+    """What the share of oblate grains gains from rest to omega_disr, of the grains whose shape is known at both.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row a grain, of one drive.
+
+    Returns
+    -------
+    change, error : float
+        See `ratd.base.statistics.mean_of`, of what each grain changes: its two shapes are alike, so that the errors of
+        the two shares do not add up.
+    """
+    (known, before), (known_after, after) = (_shapes(table, when) for when in ("start", "disr"))
+    both = known & known_after
+    return mean_of(after[both].astype(float) - before[both], cell_of(table[both]))
 
 
 def _shapes(table, when):

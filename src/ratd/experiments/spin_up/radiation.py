@@ -21,6 +21,7 @@ __all__ = [
     "SEARCHED",
     "Surroundings",
     "destroyed_sizes",
+    "dust_temperature",
     "energy_density",
     "gas_damping_time",
     "gas_drag",
@@ -38,6 +39,8 @@ ISRF = 8.64e-14
 INFRARED = 0.4
 """F_IR of a grain of 0.1 um at U = 1, n_H = 30 cm-3, T = 100 K, as printed (after Draine & Lazarian 1998). An input:
 it depends on how the grain absorbs, see `infrared_coefficient`."""
+SILICATE_TEMPERATURE = 16.4
+"""Of a grain of silicate of 0.1 um at U = 1 [K] (Draine 2011, Physics of the ISM, Sect. 24.1)."""
 SEARCHED = (10e-9, 10e-6)
 """Sizes [m] among which those that are destroyed are sought: from the smallest monomer on."""
 _HELIUM = 1.2
@@ -174,6 +177,24 @@ def infrared_damping(size, strength, around=DIFFUSE, inertia_ratio=1.0, coeffici
     return coefficient * np.cbrt(np.square(strength)) * 1e-7 / np.asarray(size) * gas
 
 
+def dust_temperature(strength, at_one=SILICATE_TEMPERATURE):
+    """Temperature [K] of a grain in light of a strength U.
+
+    Parameters
+    ----------
+    strength : float or array_like
+    at_one : float
+        The same at U = 1 [K].
+
+    Returns
+    -------
+    float or array
+        at_one U^(1/6): the infrared light of a grain whose absorption grows as the frequency squared goes as T^6
+        (Draine 2011, Physics of the ISM, Sect. 24.1).
+    """
+    return at_one * np.asarray(strength) ** (1.0 / 6.0)
+
+
 def infrared_coefficient(absorption, dust_temperature):
     """F_IR at 0.1 um, U = 1, n_H = 30 cm-3, T = 100 K from how the grain absorbs.
 
@@ -188,7 +209,7 @@ def infrared_coefficient(absorption, dust_temperature):
     -------
     float
         With the values of Draine (2011, Physics of the ISM, Sect. 24.1) 0.44 for graphite (0.8, 22.3 K), and 0.18 for
-        silicate (0.18, 16.4 K). The printed 0.4 is 0.9 and 2.2 times that.
+        silicate (0.18, `SILICATE_TEMPERATURE`). The printed 0.4 is 0.9 and 2.2 times that.
 
     Notes
     -----

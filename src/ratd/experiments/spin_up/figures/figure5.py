@@ -93,7 +93,7 @@ def figure5(run, mark=None, drive=None):
         inside = np.array([1, -1, 1, -1]) * (np.repeat(at[:, :2], 2, axis=1) - box) > -frame.radius[:, None]
         away = int(np.sum(~inside.all(axis=1))) + dropped
         if away:
-            column[0].text(0.03, 0.01, f"{away} farther", transform=column[0].transAxes, zorder=3)
+            column[0].text(0.03, 0.01, f"{away} flew off", transform=column[0].transAxes, zorder=3)
     _scale_bar(panels[1, 0], box)
     first = float(run["snapshot_omega"][0]) / omega_disr
     far = ScalarMappable(LogNorm(how_far.vmin / NM, how_far.vmax / NM), MOVED)

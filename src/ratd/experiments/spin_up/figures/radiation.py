@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ratd.experiments.spin_up.radiation import DIFFUSE
 from ratd.experiments.spin_up.surviving import COMPUTED, is_extrapolated, surviving
@@ -37,11 +38,16 @@ def radiation(table, grown, mark="omega_mass_75", around=DIFFUSE, materials=None
     Returns
     -------
     matplotlib.figure.Figure
-        By the law of this work as solid lines with a band, 16 to 84 % of what its errors allow; by the printed Table 3
-        as dashed lines, paler. Dotted where the size is none of those that were spun up, which the grey areas show.
-        A line begins where the first size is destroyed.
+        By the law of this work as solid lines, each with a band up to the size that the stronger drag leaves, by gas
+        that hits all of the porous grain; by the printed Table 3 as dashed lines, paler. Dotted where the size is none
+        of those that were spun up, which the grey areas show. A line begins where the first size is destroyed.
     """
-    found = surviving(table, grown, STRENGTHS, mark, around=around, materials=materials, draws=200)
+    found, stronger = (
+        surviving(table, grown, STRENGTHS, mark, around=around, materials=materials, porous=porous, draws=0)
+        for porous in (False, True)
+    )
+    # where the stronger drag lets no grain be torn, the band has no end
+    found["with_stronger"] = stronger["a_disr"].fillna(np.inf)
     names = list(dict.fromkeys(found["material"])) or [""]
     wide = len(names) > 1
     title = "Radiation destroys grains above a line"
@@ -79,7 +85,9 @@ def _ground(axes):
 def _line(axes, line, look, colour):
     """One law of one type: within the sizes that were spun up as it looks, beyond them dotted."""
     strength, size = line["strength"].to_numpy(), nanometres(line["a_disr"])
-    axes.fill_between(strength, nanometres(line["low"]), nanometres(line["high"]), color=colour, alpha=0.3, lw=0)
+    if look is LINES["ours"]:
+        end = nanometres(line["with_stronger"].clip(upper=SIZES[1]))
+        axes.fill_between(strength, size, end, color=colour, alpha=0.15, lw=0)
     beyond = is_extrapolated(line["a_disr"].to_numpy())
     axes.plot(strength, np.where(beyond, np.nan, size), color=colour, **look)
     # with the first one inside, so that the two meet
@@ -99,8 +107,9 @@ def _legend(figure, style, wide):
     """One legend for all panels: types, then what the lines are."""
     entries = {kind: Line2D([], [], color=look["color"], **LINES["ours"]) for kind, look in style.items()}
     entries["this work"] = Line2D([], [], color="black", **LINES["ours"])
+    entries["stronger drag"] = Patch(color="black", alpha=0.15, lw=0)
     entries["Table 3 as printed"] = Line2D([], [], color=_shade("#000000", "printed"), **LINES["printed"])
     entries["extrapolated"] = Line2D([], [], color="black", lw=1.4, **BEYOND)
     figure.legend(
-        entries.values(), entries.keys(), loc="outside lower center", handlelength=2.8, ncols=6 if wide else 2
+        entries.values(), entries.keys(), loc="outside lower center", handlelength=2.2, ncols=7 if wide else 2
     )

@@ -13,7 +13,7 @@ from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.findings.ensemble import MARK, middle, of_class
 from ratd.experiments.spin_up.fragmentation import fragment_shares
-from ratd.experiments.spin_up.oblateness import oblate_share
+from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.base.measured import Measured, median
 
@@ -82,9 +82,9 @@ def _where(letter, table):
     values[f"{letter}.flattest"] = max(slope.value for slope in slopes_above)
     order = table.assign(log=np.log(table["omega_disr"]), size=size_key(table["a_eff"]))
     means = order.groupby(["material", "type", "size"])["log"].mean().unstack("type")
-    share = float(((means["BA"] < means["BAM1"]) & (means["BA"] < means["BAM2"])).mean())
-    values[f"{letter}.BA first"] = share
-    values[f"{letter}.holds BA first"] = "yes" if share == 1.0 else "open" if share > 0.9 else "no"
+    first = (means["BA"] < means["BAM1"]) & (means["BA"] < means["BAM2"])
+    values[f"{letter}.BA first"], values[f"{letter}.BA cells"] = int(first.sum()), len(first)
+    values[f"{letter}.holds BA first"] = "yes" if first.all() else "open" if first.mean() > 0.9 else "no"
     return values
 
 
@@ -101,7 +101,10 @@ def _how(letter, table, fragments):
     for kind, share in near.items():
         values[f"{letter}.near quarter {kind}"] = Measured(100 * share.value, 100 * share.error)
         values[f"{letter}.lost at disr {kind}"] = 100.0 * median_of(lost[table["type"] == kind])["median"]
-    values[f"{letter}.holds quarter"] = all_of(is_above(share, 0.9) for share in near.values())
+    apart = {kind: median((table["omega_disr"] / table[MARK])[table["type"] == kind]) for kind in TYPES}
+    values |= {f"{letter}.disr over quarter {kind}": value for kind, value in apart.items()}
+    for name, kinds in (("BA", ("BA",)), ("BAM", BAM)):
+        values[f"{letter}.holds quarter {name}"] = all_of(is_within(apart[kind], 0.8, 1.25) for kind in kinds)
     largest = fragments[fragments["half"]].groupby("grain")[["mass_fraction"]].max()
     kinds = fragments.groupby("grain")["type"].first()[largest.index]
     pieces = {kind: median(largest.loc[kinds == kind, "mass_fraction"]) for kind in TYPES}
@@ -129,16 +132,19 @@ def _near(table):
 
 
 def _shapes(letter, table):
-    """Whether grains become oblate."""
-    bam = table[table["type"].isin(BAM)]
-    (start, start_error, *_), (end, end_error, *_) = (oblate_share(bam, when) for when in ("start", "disr"))
-    change = Measured(end - start, math.hypot(start_error, end_error))
+    """Whether grains become oblate: large ones, and small BA, of which the paper says that they do not."""
+    ba, bam = (table[table["type"].isin(kinds)] for kinds in (("BA",), BAM))
+    parts = {"BA": of_class(ba, "large"), "BAM": of_class(bam, "large"), "small BA": of_class(ba, "small")}
+    values = {}
+    for name, part in parts.items():
+        change, (share, error, *_) = Measured(*oblate_change(part)), oblate_share(part, "disr")
+        end = Measured(share, error)
+        values[f"{letter}.oblate {name} disr"] = Measured(100 * end.value, 100 * end.error)
+        values[f"{letter}.oblate {name} change"] = Measured(100 * change.value, 100 * change.error)
+        more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
+        values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more
     stretch = (bam["axis_b_disr"] / bam["axis_a_disr"]).replace(np.inf, np.nan)
-    return {
-        f"{letter}.oblate start": Measured(100 * start, 100 * start_error),
-        f"{letter}.oblate disr": Measured(100 * end, 100 * end_error),
-        f"{letter}.oblate change": Measured(100 * change.value, 100 * change.error),
-        f"{letter}.holds oblate": all_of([is_above(change, 0.0), is_above(Measured(end, end_error), 0.5)]),
+    return values | {
         f"{letter}.most oblate": float(stretch.max()),
         f"{letter}.holds b/a": "yes" if 4.0 < stretch.max() < 6.25 else "no",
     }

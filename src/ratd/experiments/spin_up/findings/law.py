@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured
+from ratd.base.measured import Measured, median
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
@@ -39,7 +39,7 @@ def of_law(table):
 
 
 def of_curve(table, grown):
-    """The curved law, and the example.
+    """The curved law, and the example: what the law says, and the median of its cell.
 
     Parameters
     ----------
@@ -62,14 +62,18 @@ def of_curve(table, grown):
     material, kind, size = EXAMPLE
     row, own = law.loc[kind], get_material(material)
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
-    cell = grown[
-        (grown["material"] == material) & (grown["type"] == kind) & np.isclose(grown["a_eff"], size, atol=1e-12)
-    ]
+    cell, measured = (_of_cell(each, *EXAMPLE) for each in (grown, table))
+    values["example.median 1e7"], values["example.n"] = median(measured[MARK] / 1e7), len(measured)
     values["example.printed"] = eq33(
         size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
         cell["filling_factor"].mean(), *TABLE_3[material, kind],
     )  # fmt: skip
     return values
+
+
+def _of_cell(table, material, kind, size):
+    alike = (table["material"] == material) & (table["type"] == kind)
+    return table[alike & np.isclose(table["a_eff"], size, atol=1e-12)]
 
 
 def _farthest(table, kind, row):

@@ -6,12 +6,13 @@ import numpy as np
 
 from ratd.base.measured import Measured
 from ratd.base.units import NM
-from ratd.experiments.spin_up.radiation import DIFFUSE, infrared_coefficient
+from ratd.experiments.spin_up.cells import TYPES
+from ratd.experiments.spin_up.radiation import DIFFUSE, SILICATE_TEMPERATURE, infrared_coefficient
 from ratd.experiments.spin_up.surviving import COMPUTED, surviving
 
 __all__ = ["NONE", "of_radiation"]
 
-SILICATE = infrared_coefficient(0.18, 16.4)
+SILICATE = infrared_coefficient(0.18, SILICATE_TEMPERATURE)
 """F_IR of silicate, where the printed 0.4 is near that of graphite."""
 SURROUNDINGS = {
     "one star": DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6),
@@ -51,7 +52,8 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
         " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With " greatest" behind it the
         largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
-        drags. With "over" for "ours" ours over the printed one. For `shown` also, without errors, with " first" the
+        drags. With "over" for "ours" ours over the printed one. ``radiation.most error``, the
+        greatest relative error of ours, and, without errors, for `shown` with " first" the
         first loss in place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
     """
     values = {}
@@ -61,6 +63,8 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         ends = [_text(values[key + behind]) for behind in ("", " porous")]
         values[f"{key} range"] = " to ".join(dict.fromkeys(ends))
     material, strength = shown
+    told = [values[f"radiation.{material} {kind} {each:g} ours"] for kind in TYPES for each in strengths]
+    values["radiation.most error"] = max(size.error / size.value for size in told if size != NONE)
     own = table[table["material"] == material]
     plain = {"draws": 0} | {name: value for name, value in options.items() if name != "draws"}
     values |= _sizes(own, grown, [strength], " first", mark="omega_first_loss", **plain)
