@@ -252,7 +252,7 @@ def _torque(table, own):
 
 
 def _slow(table, own):
-    """Beside spin-ups that do not wait and the explicit step, of all types together."""
+    """Beside spin-ups that do not wait and the explicit step, of all types together, and a quarter of each."""
     values = {}
     for vary, value in (("integrator", 1.0), ("epsilon", 0.004), ("epsilon", 0.001)):
         pairs = _paired(table, own, vary, value)
@@ -261,6 +261,7 @@ def _slow(table, own):
         values[f"{vary} {value:g} grains"] = len(pairs)
         off = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
         values[f"{vary} {value:g} range"] = f"{off.min():.2f} to {off.max():.2f}"
+        values |= {f"{vary} {value:g} {kind}": median(part) for kind, part in off.groupby(pairs["type"])}
         values[f"{vary} {value:g} steps"] = (pairs["steps"] / pairs["steps_own"]).median()
     return values
 
