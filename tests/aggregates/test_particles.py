@@ -133,7 +133,9 @@ def test_wrong_arguments(tmp_path, grain):
         read_particles(tmp_path / "a.xyz", unit="nm")
     with pytest.raises(InputError, match="frame is None; it must be a whole number"):
         read_particles(tmp_path / "a.xyz", frame=None)
-    with pytest.raises(InputError, match="read in m: radius has the median 21.*multiply those in nm by 1e-09"):
+    with pytest.raises(
+        InputError, match="read in m: radius has the median 21.*; those in nm would: give that as the unit."
+    ):
         read_particles(tmp_path / "a.txt", unit="m")
     with pytest.raises(InputError, match="unit is 'pc'; allowed: m, cm"):
         read_particles(tmp_path / "a.txt", unit="pc")

@@ -246,7 +246,7 @@ def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
     ("arguments", "said"),
     [
         (("spin-up", "none.xyz", *FAST), "error: none.xyz: cannot be read"),
-        (("spin-up", "{bare}", *FAST, "--unit", "m"), "multiply those in nm by 1e-09"),
+        (("spin-up", "{bare}", *FAST, "--unit", "m"), "those in nm would: give that as the unit"),
         (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not one of 'a-C'"),
         (("spin-up", "{apart}", *FAST), "apart.txt: The aggregate is in 2 pieces"),
         (("spin-up", "{chain}", *FAST, "--unit", "um"), "states that its lengths are in nm, and was to be read in um"),

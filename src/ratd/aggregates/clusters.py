@@ -51,11 +51,13 @@ def grow_bcca(n, material="ice", seed=0, *, radius=None, radii=None, copies=Fals
     Two clusters of n/2 monomers, turned at random, meet on a straight line. The impact parameter is uniform over a disc
     of the radius R_1 + R_2, where R_k is that of the sphere around the centre of mass that holds all of cluster k.
     Misses are drawn again. They stick at first touch, which is a distance of a_i + a_j - delta_0: the contact is free
-    of force, and the cluster, a tree, is at rest.
+    of force, and the cluster is at rest. It is a tree but for spheres that come to touch others by chance.
     """
     material = get_material(material)
     n = _check_number(n)
     seed = check_seed(seed)
+    if not isinstance(copies, bool):
+        raise InputError(f"copies is {copies!r}; it must be True or False.")
     rng = np.random.Generator(np.random.PCG64(seed_sequence("BCCA", n, seed)))
     if radii is None:
         each = np.full(n, _check_radius(radius, material))
@@ -65,7 +67,7 @@ def grow_bcca(n, material="ice", seed=0, *, radius=None, radii=None, copies=Fals
         raise InputError("copies and radii are both given; a cluster that meets its copy has equal monomers only.")
     else:
         each = rng.permutation(_check_radii(radii, n))
-    position = join_clusters(each, material.surface_energy, material.reduced_modulus, bool(copies), rng)
+    position = join_clusters(each, material.surface_energy, material.reduced_modulus, copies, rng)
     return Grain(position, each, material, type="BCCA", seed=seed)
 
 
@@ -73,7 +75,9 @@ def _check_number(n):
     whole = isinstance(n, int | np.integer) and not isinstance(n, bool) and n >= 2
     if not whole or n & (n - 1):
         below = f" ({1 << (int(n).bit_length() - 1)} or {1 << int(n).bit_length()})" if whole else ""
-        raise InputError(f"n is {n!r}; it must be a power of 2 from 2 on{below}, since clusters of equal number join.")
+        raise InputError(
+            f"n is {n!r}; it must be a power of 2 from 2 on{below}, a whole number: clusters of equal number join."
+        )
     return int(n)
 
 
@@ -94,6 +98,10 @@ def _check_radii(radii, n):
         each = np.array(radii, dtype=np.float64)
     except (TypeError, ValueError):
         each = np.zeros(0)
-    if each.shape != (n,) or not (np.isfinite(each) & (each > 0.0)).all():
-        raise InputError(f"radii must be {n} finite numbers above 0, in m, one for each monomer.")
+    if each.shape != (n,):
+        what = f"of the shape {each.shape}" if each.ndim else "no sequence"
+        raise InputError(f"radii must be {n} finite numbers above 0, in m, one for each monomer; it is {what}.")
+    wrong = np.flatnonzero(~(np.isfinite(each) & (each > 0.0)))
+    if len(wrong):
+        raise InputError(f"radii[{wrong[0]}] is {each[wrong[0]]:g}; radii must be finite numbers above 0, in m.")
     return each

@@ -192,7 +192,7 @@ def _check_overlap(contacts, gap):
         i, j = contacts[worst]
         raise InputError(
             f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions; at most "
-            f"{OVERLAP_TOLERANCE:g} are allowed."
+            f"{OVERLAP_TOLERANCE:g} are allowed. Are all lengths in m?"
         )
 
 

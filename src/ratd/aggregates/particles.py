@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import check_radii, is_number, is_whole
+from ratd.base.checks import USUAL_RADIUS, check_radii, is_dust, is_number, is_whole
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
 from ratd.pipeline.atomic import write_text
@@ -103,12 +103,22 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
     unit = unit or stated or "nm"
     factor = _factor(unit)
+    _check_unit(path, unit, values[:, 3])
     values = values * factor
-    try:
-        check_radii(values[:, 3])
-    except InputError as error:
-        raise InputError(f"{path}: read in {unit}: {error}") from error
     return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
+
+
+def _check_unit(path, unit, radius):
+    """Raise an error for radii that no dust has in a unit, with the one in which they would most likely be."""
+    try:
+        check_radii(radius * UNITS[unit])
+    except InputError as error:
+        good = [other for other, factor in UNITS.items() if is_dust(radius * factor)]
+        middle = np.median(radius)
+        good.sort(key=lambda other: abs(np.log10(middle * UNITS[other] / USUAL_RADIUS)))
+        hint = f"; those in {good[0]} would: give that as the unit" if good else ""
+        said = str(error).partition("; multiply")[0].rstrip(".")
+        raise InputError(f"{path}: read in {unit}: {said}{hint}.") from error
 
 
 def _factor(unit):

@@ -6,10 +6,21 @@ import numpy as np
 
 from ratd.base.errors import InputError
 
-__all__ = ["GREATEST_SEED", "check_radii", "far_apart", "is_number", "is_whole", "number_array"]
+__all__ = [
+    "GREATEST_SEED",
+    "USUAL_RADIUS",
+    "check_radii",
+    "far_apart",
+    "is_dust",
+    "is_number",
+    "is_whole",
+    "number_array",
+]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
 """Radii of monomers [m], from an atom to a grain of sand: what lies outside was given in another unit."""
+USUAL_RADIUS = 1e-7
+"""About the radius of monomers [m], to guess the unit by."""
 FAR = 1e4
 """Spheres that lie apart by more than this many times the length of all of them in a row do not belong together."""
 _UNITS = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3}
@@ -69,13 +80,16 @@ def check_radii(radius):
     InputError
         One sentence with the factor.
     """
-    if _is_dust(radius):
+    if is_dust(radius):
         return
     middle = float(np.median(radius))
-    factors = [f"those in {unit} by {factor:g}" for unit, factor in _UNITS.items() if _is_dust(radius * factor)]
-    if not factors and _is_dust(radius * 1e9):
-        factors = ["these by 1e+09, which they may have been divided by twice"]
-    hint = f"; multiply {factors[0]}" if factors else ""
+    fits = {unit: factor for unit, factor in _UNITS.items() if is_dust(radius * factor)}
+    hint = ""
+    if fits:
+        unit = min(fits, key=lambda unit: abs(np.log10(middle * fits[unit] / USUAL_RADIUS)))
+        hint = f"; multiply those in {unit} by {fits[unit]:g}"
+    elif is_dust(radius * 1e9):
+        hint = "; multiply these by 1e+09, which they may have been divided by twice"
     raise InputError(
         f"radius has the median {middle:g}; lengths are in m, and the radii of dust lie between "
         f"{SMALLEST_RADIUS:g} and {LARGEST_RADIUS:g} m{hint}."
@@ -90,5 +104,6 @@ def far_apart(position, radius):
     return f" Positions reach over {spread:g}, in m: multiply those in nm by 1e-09."
 
 
-def _is_dust(radius):
+def is_dust(radius):
+    """Whether radii [m] are those of dust."""
     return SMALLEST_RADIUS <= np.min(radius) and np.max(radius) <= LARGEST_RADIUS

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import warnings
 import zipfile
 from functools import cache
 from pathlib import Path
@@ -55,7 +56,13 @@ def load(path, key):
     Raises
     ------
     InputError, FileError
-        If no checkpoint can be written there, which is better known before a long run than in its middle.
+        If no checkpoint can be written there, or a file of another kind stands there, which the next checkpoint would
+        replace: that is better known before a long run than in its middle.
+
+    Warns
+    -----
+    UserWarning
+        If there is one of another run, which the next checkpoint replaces.
     """
     if path is None:
         return None
@@ -67,6 +74,12 @@ def load(path, key):
     try:
         with np.load(path, allow_pickle=False) as file:
             if str(file["key"]) != key:
+                warnings.warn(
+                    f"{path}: is the checkpoint of a run with other arguments, or of another version of ratd; this run "
+                    "begins anew, and its first checkpoint, in a minute, replaces that one",
+                    UserWarning,
+                    stacklevel=4,
+                )
                 return None
             state = copied(State(**{name: file[name] for name in State._fields}))
             tables = {name[6:]: file[name] for name in file.files if name.startswith("table_")}
@@ -80,6 +93,14 @@ def _check_place(path):
     """Raise FileError where no file can be written."""
     if path.is_dir():
         raise FileError(f"{path}: is a folder; allowed: the name of a file for the checkpoint")
+    if path.exists() and path.stat().st_size and not _begins_as_one(path):
+        raise FileError(f"{path}: holds something else than a checkpoint; allowed: the name of a new file, or of one")
     folder = next(folder for folder in path.absolute().parents if folder.exists())
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FileError(f"{path}: no checkpoint can be written below {folder}")
+
+
+def _begins_as_one(path):
+    """Whether a file begins as checkpoints do, also one that was cut off."""
+    with open(path, "rb") as file:
+        return file.read(2) == b"PK"

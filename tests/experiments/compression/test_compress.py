@@ -215,6 +215,10 @@ def test_a_compression_that_is_too_fast_is_warned_of(cluster):
     [
         ({"strain_rate": 0}, "strain_rate is 0; it must be a number above 0"),
         ({"strain_rate": float("nan")}, "strain_rate is nan; it must be a number above 0"),
+        ({"strain_rate": 100}, "strain_rate is 100; it must be above 0 and at most 0.01"),
+        ({"box_length": 3000.0}, "box_length is 3000 m; it must be at most 6.* of which the cluster fills 1e-06"),
+        ({"balance": "no"}, "balance is 'no'; it must be True or False"),
+        ({"timestep_factor": 0.7}, "timestep_factor is 0.7; it must be above 0 and at most 0.5"),
         ({"until_phi": 0.9}, "until_phi is 0.9; it must be above .* and at most 0.64"),
         ({"until_phi": 1e-4}, "until_phi is 0.0001; it must be above"),
         ({"box_length": 1e-7}, "box_length is 1e-07 m; it must be at least 2e-07 m, a monomer"),
@@ -230,6 +234,41 @@ def test_a_compression_that_is_too_fast_is_warned_of(cluster):
 def test_bad_input_is_one_sentence(cluster, arguments, said):
     with pytest.raises(ratd.InputError, match=said):
         ratd.compress(cluster, **arguments)
+
+
+def test_a_run_is_no_cluster(run):
+    with pytest.raises(
+        ratd.InputError, match="cannot be squeezed further: compress the ratd.Grain again with a higher"
+    ):
+        ratd.compress(run)
+
+
+def test_snapshots_are_those_of_the_records_whatever_their_order(cluster):
+    how = {"strain_rate": 1e-4, "until_phi": 0.03}
+    found = ratd.compress(cluster, **how, snapshots=(0.025, 0.02, 0.02001, 0.02501))
+    assert found.sizes["snapshot"] == 2 and (np.diff(found["snapshot_phi"]) > 0).all()
+    alone = ratd.compress(cluster, **how, snapshots=(0.02,))
+    xr.testing.assert_equal(found["snapshot_position"][0], alone["snapshot_position"][0])
+
+
+def test_a_step_that_bursts_the_cluster_is_an_error_also_while_it_is_loose(cluster):
+    with pytest.raises(RuntimeError, match="at phi = 0.0[0-9]+ the balance of energy is off by"):
+        ratd.compress(cluster, 1e-4, 0.09, timestep_factor=0.5, long_steps=None)
+
+
+def test_a_checkpoint_of_another_run_is_warned_of_and_another_file_is_kept(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    path = tmp_path / "run"
+    how = {"until_phi": 0.03, "checkpoint": path}
+    ratd.compress(cluster, 1e-4, **how)
+    with pytest.warns(UserWarning, match="run: is the checkpoint of a run with other arguments, or of another version"):
+        ratd.compress(cluster, 2e-4, **how)
+    path.write_text("x,y,z,r")
+    with pytest.raises(ratd.FileError, match="run: holds something else than a checkpoint; allowed: the name of a new"):
+        ratd.compress(cluster, 2e-4, **how)
+    assert path.read_text() == "x,y,z,r"
+    path.write_text("")
+    ratd.compress(cluster, 2e-4, **how)
 
 
 def test_where_no_checkpoint_can_be_written_is_said_before_the_run(cluster, tmp_path):
@@ -356,9 +395,11 @@ def test_an_aggregate_that_fills_a_box_is_pulled_as_the_compression_is(run):
     assert pulled.attrs["tensile_strength"] == pytest.approx(beside.attrs["tensile_strength"], rel=0.5)
     with pytest.raises(ratd.InputError, match="box_length belongs to a ratd.Grain"):
         ratd.stretch(run, box_length=edge)
-    with pytest.raises(ratd.InputError, match="box_length belongs to a ratd.Grain"):
+    with pytest.raises(ratd.InputError, match="box_length is missing; a ratd.Grain needs that of the periodic box"):
         ratd.stretch(cluster)
-    with pytest.raises(ratd.InputError, match="does not touch its copies"):
+    with pytest.raises(
+        ratd.InputError, match=r"box_length is .* m, in which compressed, .* m long, does not touch its"
+    ):
         ratd.stretch(cluster, box_length=10.0 * edge)
 
 

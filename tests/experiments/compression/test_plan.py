@@ -79,6 +79,10 @@ def test_the_steps_go_from_the_config_to_the_run():
             {"figures": {"figure4": {"sets": ["x"]}}},
             "config: compression.figures.figure4 names the set 'x'; allowed: base",
         ),
+        (
+            {"figures": {"figure3": {"phi": [0.05]}}},
+            "config: compression.figures.figure3.phi has 0.05; allowed: the snapshots of the set base, 0.001, ",
+        ),
         ({"further_sets": ["x"]}, "config: compression.further_sets names the set 'x'; allowed: base"),
         (
             {"figures": {"tension": {"pulls": ["y"]}}},
@@ -86,6 +90,10 @@ def test_the_steps_go_from_the_config_to_the_run():
         ),
         ({"all_sets": {"n": 1000}}, "config: compression.all_sets.n is 1000; allowed: a power of 2 from 2"),
         ({"all_sets": {"strain_rate": 0}}, "compression.all_sets.strain_rate is 0; allowed: a number above 0"),
+        (
+            {"all_sets": {"strain_rate": 100}},
+            "compression.all_sets.strain_rate is 100; allowed: a number above 0 and at",
+        ),
         ({"sets": {"base": {"material": "x"}}}, "compression.sets.base.material is 'x'; allowed: a-C"),
         ({"sets": {"base": {"material": "q-S"}}}, "compression.sets.base.radius_nm is null; allowed: a number"),
         ({"sets": {"base": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),

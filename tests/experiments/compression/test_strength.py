@@ -94,6 +94,35 @@ def test_runs_of_several_materials_are_not_one_set():
         ratd.compressive_strength(runs)
 
 
+def of_one(pressure, **attrs):
+    """A run whose pressure is a number times phi^3."""
+    phi = np.geomspace(0.02, 0.2, 60)
+    values = {"phi": ("record", phi), "phi_mean": ("record", phi), "pressure": ("record", pressure * phi**3)}
+    return xr.Dataset(values, attrs={"rolling_pressure": P_0, "strain_rate": 1e-6, "n_monomers": 64} | attrs)
+
+
+@pytest.mark.parametrize(("name", "value"), [("strain_rate", 1e-3), ("n_monomers", 128), ("law", "dmt()")])
+def test_runs_that_differ_in_more_than_their_seeds_are_not_one_set(name, value):
+    both = [of_one(P_0, law="jkr()"), of_one(0.9 * P_0, **{"law": "jkr()", name: value})]
+    with pytest.raises(ratd.InputError, match=f"the runs have {name} .* they may differ in their seeds alone"):
+        ratd.compressive_strength(both)
+
+
+def test_a_run_counts_once():
+    runs = [of_one(P_0), of_one(0.9 * P_0), of_one(P_0)]
+    with pytest.raises(ratd.InputError, match="the runs 0 and 2 are the same one; each may be given once"):
+        ratd.compressive_strength(runs)
+
+
+def test_clusters_of_unequal_monomers_have_each_their_own_rolling_pressure():
+    with pytest.warns(UserWarning, match="inertia dominates"):
+        run = ratd.compress(ratd.grow_bcca(64, seed=1), 1e-3, 0.15, balance=False)
+    other = run.assign(pressure=0.9 * 1.05 * run["pressure"])
+    other = other.assign_attrs(rolling_pressure=1.05 * run.attrs["rolling_pressure"])
+    alone = ratd.compressive_strength(run)["ratio"]
+    assert ratd.compressive_strength([run, other])["ratio"] == pytest.approx(0.95 * alone)
+
+
 def test_runs_that_begin_later_count_as_nothing_or_not_at_all():
     table = table_of(lambda phi: P_0 * phi**3, seeds=2)
     table["pressure"].values[0, :10] = np.nan

@@ -12,7 +12,7 @@ from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, an
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
-from ratd.experiments.compression.run import compress
+from ratd.experiments.compression.run import FASTEST, compress
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
 from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
@@ -31,7 +31,7 @@ SMOOTH = 1.1
 @click.command("compress")
 @aggregate_options
 @click.option(
-    "--strain-rate", default=1e-5, show_default=True, type=click.FloatRange(0, 1e-2, min_open=True),
+    "--strain-rate", default=1e-5, show_default=True, type=click.FloatRange(0, FASTEST, min_open=True),
     help="C_v: the box shrinks with dL/dt = -2 C_v L/t_0. The smaller, the lower the phi from which it is static.",
 )  # fmt: skip
 @click.option(

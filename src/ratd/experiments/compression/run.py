@@ -5,6 +5,7 @@ import warnings
 from dataclasses import fields
 
 import numpy as np
+import xarray as xr
 
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.strength import rolling_pressure
@@ -26,6 +27,10 @@ __all__ = ["BALANCE", "LONG_STEPS", "TIMESTEP_FACTOR", "Cluster", "compress", "p
 
 RECORD_STEP = 1.01
 """Ratio of the filling factors of two records."""
+FASTEST = 1e-2
+"""Greatest `strain_rate`: a box of BCCA clusters that shrinks faster outruns its monomers."""
+LOOSEST = 1e-6
+"""Least filling factor to begin with: clusters of a million monomers start at 5e-4."""
 DENSEST = 0.64
 """Greatest `until_phi`: random close packing of equal spheres."""
 TIMESTEP_FACTOR = 0.14
@@ -35,10 +40,10 @@ K_N = 0.01
 """k_n of the constant damping."""
 SNAPSHOTS = (0.003, 0.01, 0.03, 0.1, 0.3)
 LONG_STEPS = LongSteps()
-BALANCE = {0.1: 0.005, 0.3: 0.002}
+BALANCE = {0.0: 0.2, 0.1: 0.005, 0.3: 0.002}
 """From this filling factor on, the balance of energy is to hold to this part of the work of the box, or of what was
 dissipated, with explicit steps; where long ones were taken, the part of these may be `LONG_BALANCE` of theirs."""
-LONG_BALANCE = {0.05: 0.05, 0.1: 0.02}
+LONG_BALANCE = {0.0: 0.2, 0.05: 0.05, 0.1: 0.02}
 EVENTS = 100
 """Contacts whose energy is taken in place of both where they are less."""
 NOT_STATIC = 0.1
@@ -60,6 +65,11 @@ class Cluster:
     """
 
     def __init__(self, cluster, material=None):
+        if isinstance(cluster, xr.Dataset):
+            raise InputError(
+                "the cluster is a Dataset, such as ratd.compress returns; a run that ended cannot be squeezed further: "
+                "compress the ratd.Grain again with a higher until_phi."
+            )
         if not isinstance(cluster, Grain):
             raise InputError(
                 f"the cluster is of type {type(cluster).__name__}; it must be a ratd.Grain, from ratd.grow_bcca, "
@@ -113,7 +123,7 @@ def compress(
     cluster : Grain
         From `ratd.grow_bcca`, or any other aggregate in one piece.
     strain_rate : float
-        C_v: the box shrinks with dL/dt = -2 C_v L/t_0.
+        C_v: the box shrinks with dL/dt = -2 C_v L/t_0, at most `FASTEST`.
     until_phi : float
         Filling factor at which to end.
     material : str or Material, optional
@@ -132,7 +142,8 @@ def compress(
     scheme : {"homogeneous", "as_printed"}
         See `ratd.periodic`.
     snapshots : sequence of float
-        Filling factors at which positions are kept; those that the run does not pass are left out.
+        Filling factors at which positions are kept; those that the run does not pass are left out, and of those less
+        than 1 % apart, between the same two records, one is kept.
     balance : bool
         Whether the run ends with an error when the balance of energy is off by more than `BALANCE` allows.
     checkpoint : path-like, optional
@@ -154,7 +165,7 @@ def compress(
     InputError
         If an argument is not usable.
     RuntimeError
-        If the integration fails, or leaves the balance of energy.
+        If the integration fails, or leaves the balance of energy: the records up to there are lost.
 
     Warns
     -----
@@ -166,7 +177,9 @@ def compress(
     Kataoka et al. (2013), A&A 554, A4; docs/model/drives.md says what is not as printed.
     """
     cluster = Cluster(cluster, material)
-    strain_rate = _positive("strain_rate", strain_rate)
+    strain_rate = check_rate(strain_rate)
+    if not isinstance(balance, bool):
+        raise InputError(f"balance is {balance!r}; it must be True or False.")
     snapshots = _filling_factors(snapshots)
     box, first, until_phi = _box(cluster, strain_rate, until_phi, box_length, scheme)
     law = law_of(law, compression_law)
@@ -182,7 +195,7 @@ def compress(
     phi = first * np.exp(np.log(until_phi / first) * np.arange(1, number + 1) / number)
     marks = np.log(first / phi) / (3.0 * box.rate_x)
     reached = [value for value in snapshots if first <= value <= until_phi]
-    wanted = [int(np.searchsorted(phi, value * (1.0 - 1e-9))) + 1 for value in reached]
+    wanted = sorted({int(np.searchsorted(phi, value * (1.0 - 1e-9))) + 1 for value in reached})
     later = None if long_steps is None else (int(np.searchsorted(phi, long_steps.until_phi)) + 1, explicit)
     state, key = prepared(cluster, parts, (until_phi, tuple(wanted), later))
 
@@ -235,6 +248,14 @@ def attributes(cluster):
     }
 
 
+def check_rate(strain_rate):
+    """The rate of a box as a float; an error for one that is none."""
+    strain_rate = _positive("strain_rate", strain_rate)
+    if strain_rate > FASTEST:
+        raise InputError(f"strain_rate is {strain_rate:g}; it must be above 0 and at most {FASTEST:g}.")
+    return strain_rate
+
+
 def _positive(name, value):
     if not (is_number(value) and value > 0.0):
         raise InputError(f"{name} is {value!r}; it must be a number above 0.")
@@ -254,6 +275,11 @@ def _box(cluster, strain_rate, until_phi, length, scheme):
             "so that its copies do not overlap."
         )
     first = cluster.volume / length**3
+    if first < LOOSEST:
+        most = (cluster.volume / LOOSEST) ** (1.0 / 3.0)
+        raise InputError(
+            f"box_length is {length:g} m; it must be at most {most:.3g} m, of which the cluster fills {LOOSEST:g}."
+        )
     until_phi = _positive("until_phi", until_phi)
     if not first < until_phi <= DENSEST:
         raise InputError(
@@ -315,7 +341,7 @@ def balance_check(explicit, long):
             raise RuntimeError(
                 f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are "
                 f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: take a lower "
-                "strain_rate, or a smaller timestep_factor"
+                "strain_rate, or a smaller timestep_factor; balance=False lets it run on"
             )
 
     return check

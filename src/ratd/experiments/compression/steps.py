@@ -15,6 +15,8 @@ ROLLED = 2 / 3
 its limit from rest."""
 CALMED = 0.3
 """Length of a step over the longest above which it calms less (`calmed` of `semi_implicit`)."""
+LARGEST_FACTOR = 0.5
+"""Greatest f of the explicit step: with longer ones a crowded cluster gains energy until it bursts."""
 TRAVEL = 0.01
 """Part of r_0 by which a monomer may move against the box in a long step at most."""
 
@@ -73,6 +75,8 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
     InputError
     """
     explicit = leapfrog(timestep_factor=timestep_factor)
+    if timestep_factor > LARGEST_FACTOR:
+        raise InputError(f"timestep_factor is {timestep_factor!r}; it must be above 0 and at most {LARGEST_FACTOR:g}.")
     if long_steps is None:
         return explicit, explicit
     if not isinstance(long_steps, LongSteps):

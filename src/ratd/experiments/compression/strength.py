@@ -39,6 +39,10 @@ FARTHEST = 4
 """Distances of N(<r) over which the slope far away is taken."""
 FEWEST_BINS = 3
 """Bins with a mean pressure above 0 that a fit needs."""
+UNEQUAL = 1.2
+"""Greatest ratio of the P_0 of two clusters whose unequal monomers are drawn from one law."""
+ALIKE = ("material", "n_monomers", "strain_rate", "scheme", "law")
+"""Attributes that are the same in runs that differ in their seeds alone."""
 NEAR = 1.11
 """A value at phi is that of all bins from phi/NEAR to phi NEAR."""
 
@@ -403,8 +407,8 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     Raises
     ------
     InputError
-        If there is no run, one is no compression, they are of several materials or sizes of monomers, or none covers
-        the range, with some pressure above 0.
+        If there is no run, one is no compression, they differ in more than their seeds, one is given twice, or none
+        covers the range, with some pressure above 0.
     """
     found = list(run) if isinstance(run, list | tuple) else [run]
     _check_runs(found)
@@ -415,9 +419,10 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     table = xr.Dataset({"phi": ("phi_bin", BIN ** (np.arange(first, last + 1) + 0.5))})
     table["pressure"] = (
         ("seed_number", "phi_bin"),
-        np.array([in_bins(each, first, last)["pressure"] for each in found]),
+        # clusters of unequal monomers have each a P_0 of their own
+        np.array([in_bins(each, first, last)["pressure"] / each.attrs["rolling_pressure"] for each in found]),
     )
-    table["rolling_pressure"] = ("seed_number", np.array([each.attrs["rolling_pressure"] for each in found]))
+    table["rolling_pressure"] = ("seed_number", np.ones(len(found)))
     fit = fit_power_law(table, low, high)
     names = ("exponent", "prefactor", "ratio")
     values = dict(zip(names, fit.value.tolist(), strict=True))
@@ -435,8 +440,23 @@ def _check_runs(runs):
             what = "the Dataset of something else" if isinstance(one, xr.Dataset) else f"of type {type(one).__name__}"
             raise InputError(f"run is {what}; {allowed}.")
     every = sorted({float(one.attrs["rolling_pressure"]) for one in runs})
-    if not np.allclose(every, every[0], rtol=1e-9):
+    if every[-1] > UNEQUAL * every[0]:
         raise InputError(
             f"the runs have P_0 from {every[0]:.4g} to {every[-1]:.4g} Pa; they may differ in their seeds alone, not "
             "in material or radius."
         )
+    for name in ALIKE:
+        values = list(dict.fromkeys(one.attrs[name] for one in runs if name in one.attrs))
+        if len(values) > 1:
+            raise InputError(
+                f"the runs have {name} {values[0]!r} and {values[1]!r}; they may differ in their seeds alone."
+            )
+    for number, one in enumerate(runs):
+        same = next((k for k in range(number) if _is_same(runs[k], one)), None)
+        if same is not None:
+            raise InputError(f"the runs {same} and {number} are the same one; each may be given once.")
+
+
+def _is_same(one, other):
+    """Whether two runs are one: clusters of other seeds never have the same pressures."""
+    return "pressure" in one and "pressure" in other and one["pressure"].equals(other["pressure"])

@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import Material
 from ratd.drives.squeezing import squeezing
@@ -13,13 +12,21 @@ from ratd.engine.contacts import update_contact_rates
 from ratd.engine.layout import DT, TIME
 from ratd.engine.state import come_to_rest, new_state
 from ratd.engine.step import run, until
-from ratd.experiments.compression.run import TIMESTEP_FACTOR, Cluster, attributes, balance_check, compression_law
+from ratd.experiments.compression.run import (
+    TIMESTEP_FACTOR,
+    Cluster,
+    attributes,
+    balance_check,
+    check_rate,
+    compression_law,
+)
 from ratd.experiments.compression.static import box_rate
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.evolve import touching_at_start
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.geometry.box import periodic
+from ratd.geometry.shape import greatest_extent
 from ratd.laws.chosen import check_stiffness, law_of
 from ratd.pipeline.kinds import MATERIAL
 
@@ -99,12 +106,13 @@ def stretch(
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
     if not (isinstance(compressed, Grain) or _has_state(compressed)):
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
-    if isinstance(compressed, Grain) != (box_length is not None):
+    if isinstance(compressed, Grain) and box_length is None:
+        raise InputError("box_length is missing; a ratd.Grain needs that of the periodic box which it fills.")
+    if not isinstance(compressed, Grain) and box_length is not None:
         raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
     if not isinstance(unload, bool):
         raise InputError(f"unload is {unload!r}; it must be True or False.")
-    if not (is_number(strain_rate) and strain_rate > 0.0):
-        raise InputError(f"strain_rate is {strain_rate!r}; it must be a number above 0.")
+    strain_rate = check_rate(strain_rate)
     law = law_of(law, compression_law)
     if long_steps is not None:
         check_stiffness(law, "give long_steps=None")
@@ -181,7 +189,12 @@ def _in_box(cluster, parts):
     grain = cluster.grain
     pairs = touching_at_start(grain.position, grain.radius, parts.box)
     if not pairs[:, 2:].any():
-        raise InputError("compressed does not touch its copies in a box of box_length: there is nothing to pull.")
+        edges = " x ".join(f"{edge:.4g}" for edge in parts.box[:3])
+        extent = greatest_extent(grain.position, grain.radius)
+        raise InputError(
+            f"box_length is {edges} m, in which compressed, {extent:.4g} m long, does not touch its copies: there is "
+            "nothing to pull."
+        )
     return new_state(grain.position, grain.radius, grain.material, pairs, *parts)
 
 

@@ -10,6 +10,7 @@ from ratd.base.errors import InputError
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
 from ratd.experiments.compression.grow import grown
+from ratd.experiments.compression.run import RECORD_STEP
 from ratd.experiments.compression.strain import LABELS
 from ratd.laws.contact_constants import reduced_radius, rolling_energy
 from ratd.observables.energy import DISSIPATED, STORED
@@ -271,9 +272,11 @@ def typed(table):
 
 
 def snapshots(files, settings, say):
-    """Positions of one run at some filling factors, wrapped into the box about its middle."""
+    """Positions of one run at some filling factors, wrapped into the box about its middle, of those that it passed."""
     run = read_run(files["run"])
-    wanted = [int(np.argmin(np.abs(np.log(run["snapshot_phi"].values / phi)))) for phi in settings["phi"]]
+    kept = run["snapshot_phi"].values
+    nearest = {phi: int(np.argmin(np.abs(np.log(kept / phi)))) for phi in settings["phi"]}
+    wanted = [at for phi, at in nearest.items() if abs(np.log(kept[at] / phi)) < 2.0 * np.log(RECORD_STEP)]
     length = run["snapshot_box_length"].values[wanted]
     position = run["snapshot_position"].values[wanted]
     wrapped = position - length[:, None, None] * np.round(position / length[:, None, None])

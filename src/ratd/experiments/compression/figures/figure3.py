@@ -22,7 +22,7 @@ def figure3(snapshots):
     title = f"a cluster of {snapshots.sizes['monomer']} monomers among its copies"
     figure = new_figure(TWO_COLUMNS, 0.4 * TWO_COLUMNS, title)
     half = 1.02 * snapshots["box_length"].values.max()
-    for k, axes in enumerate(figure.subplots(1, n)):
+    for k, axes in enumerate(figure.subplots(1, n, squeeze=False)[0]):
         length = snapshots["box_length"].values[k]
         own = np.stack([snapshots[axis].values[k] for axis in "xyz"], axis=1)
         position, colour = [], []
