@@ -6,6 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 import pytest
+import xarray as xr
 
 import ratd
 from tiny_pipeline import Pipeline
@@ -39,14 +40,16 @@ def test_one_grain_and_two_that_meet():
     assert abs(meeting["residual"][-1]) < 0.03 * meeting["kinetic_translation"][0]
 
 
-def test_a_cluster_that_is_compressed_and_pulled():
+def test_a_cluster_that_is_compressed_and_pulled(tmp_path, monkeypatch):
     """With one that takes a second."""
+    monkeypatch.chdir(tmp_path)
     lines = code("From Python", "and pulled again:", "Own aggregates")
     names = {"ratd": ratd}
     for as_written, small in (("1024", "64"), ("strain_rate=1e-5", "strain_rate=3e-5")):
         lines = [line.replace(as_written, small) for line in lines]
     exec("\n".join(lines), names)
     assert names["run"]["phi"][-1] == pytest.approx(0.3, rel=1e-3)
+    xr.testing.assert_identical(xr.load_dataset("run.nc"), names["run"])
     assert names["pulled"].attrs["tensile_strength"] > 0.0
 
 
