@@ -42,6 +42,15 @@ def test_the_omega_of_my_aggregate(tmp_path):
     assert {"mine.png", "mine_spin_up.nc", "mine_spin_up.png", "mine_spin_up.html"} <= set(os.listdir(tmp_path))
 
 
+def test_the_pressure_of_my_cluster(tmp_path):
+    said = follow("pressure_of_my_cluster.md", tmp_path)
+    assert re.search(r"P at phi 0\.1 = \S+ ± \S+ Pa", said)
+    assert re.search(r"[\d.]+ Pa at the filling factor 0\.19\d+\n", said) and "took most of the work" in said
+    assert 0.1 < float(re.search(r"(\S+) times P_0", said)[1]) < 3.0
+    assert float(re.search(r"(\S+) Pa is its tensile strength", said)[1]) > 0.0
+    assert {"mine_compressed.nc", "mine_compressed.png", "mine_compressed.html"} <= set(os.listdir(tmp_path))
+
+
 def test_only_co_s_and_then_figure_7_in_my_style(tmp_path):
     for name in ("config", "profiles", "workflow", "Snakefile"):
         copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy

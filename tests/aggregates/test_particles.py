@@ -131,6 +131,10 @@ def test_wrong_arguments(tmp_path, grain):
     assert read_particles(tmp_path / "a.xyz").radius == pytest.approx(grain.radius)
     with pytest.raises(InputError, match="states that its lengths are in um, and was to be read in nm"):
         read_particles(tmp_path / "a.xyz", unit="nm")
+    with pytest.raises(InputError, match="path is None; it must be the path of a file"):
+        read_particles(None)
+    with pytest.raises(InputError, match="content is of type NoneType; it must be a ratd.Grain"):
+        write_particles(None, tmp_path / "b.xyz")
     with pytest.raises(InputError, match="frame is None; it must be a whole number"):
         read_particles(tmp_path / "a.xyz", frame=None)
     with pytest.raises(

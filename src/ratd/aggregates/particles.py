@@ -1,5 +1,6 @@
 """Spheres in files of other programs: text, CSV, extended XYZ and LAMMPS dumps, read and written."""
 
+import os
 import re
 import shlex
 from io import StringIO
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from ratd.aggregates.grain import Grain
 from ratd.base.checks import USUAL_RADIUS, check_radii, is_dust, is_number, is_whole
@@ -77,7 +79,7 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     InputError
         If the unit is unknown or another one than the file states, or the radii are not those of dust in it.
     """
-    path = Path(path)
+    path = _path(path)
     if unit is not None:
         _factor(unit)
     reader = _reader(path)
@@ -106,6 +108,12 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     _check_unit(path, unit, values[:, 3])
     values = values * factor
     return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
+
+
+def _path(path):
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(f"path is {path!r}; it must be the path of a file")
+    return Path(path)
 
 
 def _check_unit(path, unit, radius):
@@ -288,9 +296,14 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
     ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
     dropped are left out. The frames of a spin-up are those of the frame that turns with the grain.
     """
-    path = Path(path)
+    path = _path(path)
     factor = _factor(unit)
     _reader(path)
+    if not isinstance(content, Grain | Particles | xr.Dataset):
+        raise InputError(
+            f"content is of type {type(content).__name__}; it must be a ratd.Grain, spheres of ratd.read_particles, or "
+            "a run"
+        )
     frames = list(_contents(content))
     if not frames:
         raise InputError(f"{path}: the run has no snapshots to write; set snapshot_every")

@@ -87,7 +87,7 @@ def test_what_is_no_compression_has_no_strength(runs, said):
 
 
 def test_runs_of_several_materials_are_not_one_set():
-    runs = [xr.Dataset({"phi_mean": ("record", [0.1])}, attrs={"rolling_pressure": P}) for P in (P_0, 2 * P_0)]
+    runs = [of_one(P, rolling_pressure=P) for P in (P_0, 2 * P_0)]
     with pytest.raises(
         ratd.InputError, match="the runs have P_0 from 5e.05 to 1e.06 Pa; they may differ in their seeds"
     ):
@@ -97,7 +97,9 @@ def test_runs_of_several_materials_are_not_one_set():
 def of_one(pressure, **attrs):
     """A run whose pressure is a number times phi^3."""
     phi = np.geomspace(0.02, 0.2, 60)
-    values = {"phi": ("record", phi), "phi_mean": ("record", phi), "pressure": ("record", pressure * phi**3)}
+    values = {"phi": phi, "phi_mean": phi, "pressure": pressure * phi**3}
+    values = {name: ("record", numbers) for name, numbers in values.items()}
+    values["pressure_tensor"] = (("record", "component"), np.zeros((60, 6)))
     return xr.Dataset(values, attrs={"rolling_pressure": P_0, "strain_rate": 1e-6, "n_monomers": 64} | attrs)
 
 

@@ -436,7 +436,8 @@ def _check_runs(runs):
     if not runs:
         raise InputError(f"run is an empty list; {allowed}.")
     for one in runs:
-        if not isinstance(one, xr.Dataset) or "rolling_pressure" not in one.attrs or "phi_mean" not in one:
+        needed = {"phi_mean", "pressure", "pressure_tensor"}
+        if not isinstance(one, xr.Dataset) or "rolling_pressure" not in one.attrs or not needed <= set(one):
             what = "the Dataset of something else" if isinstance(one, xr.Dataset) else f"of type {type(one).__name__}"
             raise InputError(f"run is {what}; {allowed}.")
     every = sorted({float(one.attrs["rolling_pressure"]) for one in runs})

@@ -74,6 +74,9 @@ LAMMPS = {
 """Spin-up of ratd beside LAMMPS -> table below docs, written with docs/validation.md."""
 MARK_RULES = "validation/data/mark_rules.nc"
 """omega_disr by other rules, below docs, taken there by ``python -m ratd.validation.document collect``."""
+OTHERS = ("q-S", "co-S")
+STUDY = "config/figure9_{}.yaml"
+"""Materials beside that of figure 9 for which its constants were varied as well, and their config."""
 RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
@@ -97,6 +100,8 @@ class Data(NamedTuple):
         Those of figure 1.
     tables : dict of str to pandas.DataFrame
         ``parameters`` (figure 9), ``formulae``.
+    others : dict of str to pandas.DataFrame
+        Material of `OTHERS` -> the same as ``parameters``.
     pairs : list of pandas.DataFrame
         Of figure 10.
     pulled : pandas.DataFrame
@@ -118,6 +123,7 @@ class Data(NamedTuple):
     runs: dict
     grains: list
     tables: dict
+    others: dict
     pairs: list
     pulled: pd.DataFrame
     lammps: dict
@@ -137,6 +143,9 @@ def collect(results, data=DATA):
     results, data, plan = Path(results), Path(data), load(*CONFIGS)
     for name, source in TABLES.items():
         _copy(results / source, data / f"{name}.nc", name)
+    for material in OTHERS:
+        own = results.parent / f"figure9_{material}/parameters/{DRIVEN}.nc"
+        _copy(own, data / f"parameters_{material}.nc", "parameters", f" --configfile {STUDY.format(material)}")
     for material in plan.config["materials"]:
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
     path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
@@ -152,14 +161,14 @@ def collect(results, data=DATA):
     io.write(data / f"figure5/{DRIVEN}.nc", block, "spinup")
 
 
-def _read(path, kind):
+def _read(path, kind, how=""):
     if not Path(path).is_file():
-        raise FileError(f"{path}: is missing; `snakemake --cores 2 {path}` makes it")
+        raise FileError(f"{path}: is missing; `snakemake --cores 2 {path}{how}` makes it")
     return io.read(path, kind)
 
 
-def _copy(source, target, kind):
-    _read(source, kind)
+def _copy(source, target, kind, how=""):
+    _read(source, kind, how)
     with atomic(target) as temporary:
         temporary.write_bytes(source.read_bytes())
 
@@ -185,6 +194,7 @@ def read_data(data=DATA):
         runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
+        others={name: io.read(data / f"parameters_{name}.nc", "parameters").to_dataframe() for name in OTHERS},
         pulled=read_pulled(data / "pulled"),
         studies=studies(data, files, printed),
         lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
@@ -215,6 +225,8 @@ def findings(data, fits):
     values |= of_law(data.driven) | ensemble.marks_compared(data.driven) | ensemble.table_3_by_mark(data.driven)
     values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
+    for material, table in data.others.items():
+        values |= {f"{material} {name}": value for name, value in beside.of_ways(table).items()}
     values |= beside.of_formulae(data.tables["formulae"])
     values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
     values |= beside.composition_tables()
