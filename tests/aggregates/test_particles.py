@@ -125,6 +125,22 @@ def test_what_is_wrong_with_a_file_is_said_in_one_sentence(tmp_path, name, text,
     assert str(tmp_path / name) in str(error.value) and "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "length"), [("micron", 1e-6), ("µm", 1e-6), ("A", 1e-10), ("Å", 1e-10), ("nm", 1e-9), ("parsec", None)]
+)
+def test_a_unit_in_brackets_is_known_or_refused(tmp_path, name, length):
+    path = tmp_path / "a.csv"
+    path.write_text(f"x [{name}],y [{name}],z [{name}],r [{name}]\n0,0,0,20\n0,0,40,20\n", encoding="utf-8")
+    if length is None:
+        with pytest.raises(FileError, match="its unit is 'parsec'; allowed: m, cm"):
+            read_particles(path)
+    else:
+        assert read_particles(path).radius == pytest.approx(20 * length)
+    xyz = tmp_path / "a.xyz"
+    xyz.write_text("1\nProperties=species:S:1:pos:R:3:radius:R:1 units=micron\nX 0 0 0 0.02\n")
+    assert read_particles(xyz).radius == pytest.approx(2e-8)
+
+
 def test_wrong_arguments(tmp_path, grain):
     write_particles(grain, tmp_path / "a.txt")
     write_particles(grain, tmp_path / "a.xyz", unit="um")

@@ -164,6 +164,16 @@ def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypa
     assert len(parts) == before + 8
 
 
+@pytest.mark.parametrize("speed", [1.0, 10.0, 50.0])
+@pytest.mark.parametrize("records", [1, 100, 400])
+def test_two_spheres_that_meet_keep_the_balance_with_the_default_step(speed, records):
+    """In the first step of a contact the damping takes a tenth of the energy, of which a record knows half a step."""
+    position, velocity = [[0, 0, 0], [0, 60e-9, 0]], [[0, 0, 0], [0, -speed, 0]]
+    run = evolve(position, [2e-8, 2e-8], velocity, duration=1e-7 / speed, records=records)
+    assert run["n_contacts"][-1] == 1
+    assert abs(run["residual"][-1]) < 0.05 * run["kinetic_translation"][0]
+
+
 def test_velocity_and_spin_of_the_same_numbers_are_told_apart(tmp_path, monkeypatch):
     monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
     options = GOOD | {"checkpoint": tmp_path / "run.npz", "balance": None}

@@ -25,6 +25,9 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
 _STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
 """Unit of length -> style of units in LAMMPS, which its dumps may name."""
+_BRACKETS = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
+_OTHER_NAMES = {"micron": "um", "microns": "um", "micrometer": "um", "a": "angstrom", "å": "angstrom"}
+"""Other names of `UNITS`."""
 _UNIT = re.compile(r"[\s\[(_]([a-z]+)")
 _TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
 _XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
@@ -64,7 +67,7 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         with x y z or xu yu zu, and radius).
     unit : str, optional
         Of all lengths in the file: m, cm, mm, um, nm or angstrom. If not given, that which the file states (``x [um]``
-        in the names of its columns, ``unit=um`` in extended XYZ), or nm.
+        in the names of its columns, ``unit=um`` in extended XYZ), or nm. A unit in brackets that is none is an error.
     frame : int, optional
         Which one, in a file of several; the last if not given.
 
@@ -162,10 +165,20 @@ def _read_table(path, frame):
     if not named and len(table.columns) > len(names):
         raise ValueError(f"it has {len(table.columns)} columns; more than x y z r need their names in the first line")
     table.columns = [_name(word) for word in words] if named else names[: len(table.columns)]
-    stated = {unit for word in words if _name(word) in names for unit in _UNIT.findall(word)} & set(UNITS)
+    of_lengths = [word for word in words if _name(word) in names]
+    stated = {_unit(unit) for word in of_lengths for unit in _BRACKETS.findall(word)}
+    stated |= {unit for word in of_lengths for unit in _UNIT.findall(word)} & set(UNITS)
     if len(stated) > 1:
         raise ValueError(f"its columns are in several units, {', '.join(sorted(stated))}")
     return table, None, next(iter(stated), None)
+
+
+def _unit(name):
+    """The unit of a name that a file has for it."""
+    unit = _OTHER_NAMES.get(name, name)
+    if unit not in UNITS:
+        raise ValueError(f"its unit is {name!r}; allowed: {', '.join(UNITS)}")
+    return unit
 
 
 def _words(line, separator):
@@ -224,9 +237,8 @@ def _read_xyz(path, frame):
         )
     table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
     periodic = _periodic(about.get("pbc", "T T T" if "Lattice" in about else "F F F").split(), "T", "True", "true", "1")
-    stated = about.get("unit")
-    if stated is not None and stated not in UNITS:
-        raise ValueError(f"its unit is {stated!r}; allowed: {', '.join(UNITS)}")
+    stated = about.get("unit", about.get("units"))
+    stated = None if stated is None else _unit(stated.lower())
     if "Lattice" not in about or not periodic:
         return table, None, stated
     return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3)), stated

@@ -20,7 +20,7 @@ from ratd.pipeline.places import contradiction
 __all__ = ["atomic", "read", "read_made_with", "write", "write_text"]
 
 CONVENTIONS = "CF-1.11"
-REMEDY = "remove it, and the same command makes it anew"
+REMEDY = "if a command of ratd wrote it, remove it, and the same command makes it anew"
 COMPRESSED_FROM = 512
 """Arrays of this many elements or more are compressed; for fewer the bookkeeping takes more room than it saves."""
 

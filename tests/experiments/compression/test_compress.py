@@ -267,6 +267,10 @@ def test_a_checkpoint_of_another_run_is_warned_of_and_another_file_is_kept(clust
     with pytest.raises(ratd.FileError, match="run: holds something else than a checkpoint; allowed: the name of a new"):
         ratd.compress(cluster, 2e-4, **how)
     assert path.read_text() == "x,y,z,r"
+    with open(path, "wb") as file:
+        np.savez(file, important=np.arange(5.0))
+    with pytest.raises(ratd.FileError, match="run: holds something else than a checkpoint"):
+        ratd.compress(cluster, 2e-4, **how)
     path.write_text("")
     ratd.compress(cluster, 2e-4, **how)
 
