@@ -30,6 +30,8 @@ TURN = 0.04
 """Angle [rad] by which the frame turns in a step at most: the Coriolis force is explicit, and grows what moves by
 2 TURN^2 a step, where the drag takes c TURN."""
 
+GREATEST_STRETCH = 1e-10
+"""Greatest `stretch` [m]: an atom; contacts give way at less."""
 LEAST_DRAG = 2.0 * TURN
 """c up to which motion would grow in steps of the greatest turn."""
 
@@ -155,6 +157,9 @@ def quasi_static(name, *, omega_1, stretch=2e-14, pace=0.02, unrest=0.02, drag=1
     for word, value in (("pace", pace), ("unrest", unrest), ("stretch", stretch), ("drag", drag), ("omega_1", omega_1)):
         if not (is_number(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
+    for word, value, most in (("pace", pace, 1.0), ("unrest", unrest, 1.0), ("stretch", stretch, GREATEST_STRETCH)):
+        if value > most:
+            raise InputError(f"{word} is {value!r}; it must be above 0 and at most {most:g}.")
     if drag <= LEAST_DRAG:
         raise InputError(
             f"drag is {drag!r}; it must be above {LEAST_DRAG}, by which the Coriolis force makes motion grow."
