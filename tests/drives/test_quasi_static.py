@@ -191,7 +191,6 @@ def test_what_fails_is_made_again_with_smaller_steps(grain, monkeypatch):
         ({"pace": -1.0}, "pace is -1.0"),
         ({"pace": 10.0}, "pace is 10.0; it must be above 0 and at most 1"),
         ({"stretch": 1.0}, "stretch is 1.0; it must be above 0 and at most 1e-10"),
-        ({"epsilon": 10.0}, "epsilon is 10.0; it must be above 0 and at most 1"),
         ({"drag": 0.0}, "drag is 0.0"),
         ({"drag": 0.05}, "above 0.08"),
     ],

@@ -22,7 +22,6 @@ PLAUSIBLE = {
     "surface_energy": (0.0, 10.0, "J/m2"),
     "youngs_modulus": (1e4, 1e13, "Pa"),
     "density": (10.0, 3e4, "kg/m3"),
-    "critical_rolling_displacement": (0.0, 1e-7, "m"),
     "viscous_time": (0.0, 1e-7, "s"),
 }
 """Between which values a constant of a solid lies, and its unit: what lies outside was given in another one."""

@@ -151,8 +151,6 @@ def rotating(name, *, omega_1, epsilon=None, angular_acceleration=None, coriolis
     for word, value in (("epsilon", epsilon), ("angular_acceleration", angular_acceleration)):
         if value is not None and not (is_number(value) and value > 0):
             raise InputError(f"{word} is {value!r}; it must be a number above 0.")
-    if epsilon is not None and epsilon > 1.0:
-        raise InputError(f"epsilon is {epsilon!r}; it must be above 0 and at most 1, of (d omega/dt)/omega^2.")
     literal = name == "literal"
     if coriolis is None:
         coriolis = "explicit" if literal else "exact"

@@ -20,7 +20,7 @@ from ratd.pipeline.places import contradiction
 __all__ = ["atomic", "read", "read_made_with", "write", "write_text"]
 
 CONVENTIONS = "CF-1.11"
-REMEDY = "if a command of ratd wrote it, remove it, and the same command makes it anew"
+REMEDY = "remove it, and the same command makes it anew"
 COMPRESSED_FROM = 512
 """Arrays of this many elements or more are compressed; for fewer the bookkeeping takes more room than it saves."""
 
@@ -171,7 +171,7 @@ def read(path, kind):
         with xr.open_dataset(path, engine="netcdf4", decode_times=False, mask_and_scale=False) as opened:
             dataset = opened.load()
     except Exception as error:  # a damaged file can make the libraries raise almost anything
-        raise FileError(f"{path}: is damaged or no netCDF file ({error}): {REMEDY}") from error
+        raise FileError(f"{path}: is damaged or no netCDF file ({error}): if ratd wrote it, {REMEDY}") from error
     found = dataset.attrs.get("file_kind")
     if found is None:
         raise FileError(f"{path}: was not written by ratd, a file of {kind} is needed")
