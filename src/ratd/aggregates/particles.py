@@ -13,7 +13,7 @@ import pandas as pd
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import USUAL_RADIUS, check_radii, is_dust, is_number, is_whole
+from ratd.base.checks import is_dust, is_number, is_whole, likely_unit, not_dust
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
 from ratd.pipeline.atomic import write_text
@@ -121,15 +121,11 @@ def _path(path):
 
 def _check_unit(path, unit, radius):
     """Raise an error for radii that no dust has in a unit, with the one in which they would most likely be."""
-    try:
-        check_radii(radius * UNITS[unit])
-    except InputError as error:
-        good = [other for other, factor in UNITS.items() if is_dust(radius * factor)]
-        middle = np.median(radius)
-        good.sort(key=lambda other: abs(np.log10(middle * UNITS[other] / USUAL_RADIUS)))
-        hint = f"; those in {good[0]} would: give that as the unit" if good else ""
-        said = str(error).partition("; multiply")[0].rstrip(".")
-        raise InputError(f"{path}: read in {unit}: {said}{hint}.") from error
+    if is_dust(radius * UNITS[unit]):
+        return
+    likely = likely_unit(radius, UNITS)
+    hint = "" if likely is None else f"; those in {likely} would: give that as the unit"
+    raise InputError(f"{path}: read in {unit}: {not_dust(radius * UNITS[unit])}{hint}.")
 
 
 def _factor(unit):

@@ -8,18 +8,19 @@ from ratd.base.errors import InputError
 
 __all__ = [
     "GREATEST_SEED",
-    "USUAL_RADIUS",
     "check_radii",
     "far_apart",
     "is_dust",
     "is_number",
     "is_whole",
+    "likely_unit",
+    "not_dust",
     "number_array",
 ]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
 """Radii of monomers [m], from an atom to a grain of sand: what lies outside was given in another unit."""
-USUAL_RADIUS = 1e-7
+_USUAL_RADIUS = 1e-7
 """About the radius of monomers [m], to guess the unit by."""
 FAR = 1e4
 """Spheres that lie apart by more than this many times the length of all of them in a row do not belong together."""
@@ -82,18 +83,28 @@ def check_radii(radius):
     """
     if is_dust(radius):
         return
-    middle = float(np.median(radius))
-    fits = {unit: factor for unit, factor in _UNITS.items() if is_dust(radius * factor)}
+    unit = likely_unit(radius, _UNITS)
     hint = ""
-    if fits:
-        unit = min(fits, key=lambda unit: abs(np.log10(middle * fits[unit] / USUAL_RADIUS)))
-        hint = f"; multiply those in {unit} by {fits[unit]:g}"
+    if unit is not None:
+        hint = f"; multiply those in {unit} by {_UNITS[unit]:g}"
     elif is_dust(radius * 1e9):
         hint = "; multiply these by 1e+09, which they may have been divided by twice"
-    raise InputError(
-        f"radius has the median {middle:g}; lengths are in m, and the radii of dust lie between "
-        f"{SMALLEST_RADIUS:g} and {LARGEST_RADIUS:g} m{hint}."
+    raise InputError(f"{not_dust(radius)}{hint}.")
+
+
+def not_dust(radius):
+    """What a message says of radii [m] that no dust has, without an end."""
+    return (
+        f"radius has the median {float(np.median(radius)):g}; lengths are in m, and the radii of dust lie between "
+        f"{SMALLEST_RADIUS:g} and {LARGEST_RADIUS:g} m"
     )
+
+
+def likely_unit(radius, units):
+    """The name in `units` (name -> m) in which some numbers would most likely be radii of dust; None where in none."""
+    fits = [unit for unit, factor in units.items() if is_dust(radius * factor)]
+    middle = np.median(radius)
+    return min(fits, key=lambda unit: abs(np.log10(middle * units[unit] / _USUAL_RADIUS)), default=None)
 
 
 def far_apart(position, radius):

@@ -15,7 +15,8 @@ from ratd.pipeline.atomic import atomic
 from ratd.pipeline.provenance import source_hash
 
 
-_FOREIGN = "holds something else than a checkpoint; allowed: the name of a new file, or of one"
+_FIRST = b"key.npy"
+"""Name of the first member of a checkpoint; names stand 30 bytes behind the beginning of a member of a zip."""
 
 
 def fingerprint(module, arrays, *settings):
@@ -76,8 +77,6 @@ def load(path, key):
         return None
     try:
         with np.load(path, allow_pickle=False) as file:
-            if "key" not in file:
-                raise FileError(f"{path}: {_FOREIGN}")
             if str(file["key"]) != key:
                 warnings.warn(
                     f"{path}: is the checkpoint of a run with other arguments, or of another version of ratd; this run "
@@ -89,8 +88,6 @@ def load(path, key):
             state = copied(State(**{name: file[name] for name in State._fields}))
             tables = {name[6:]: file[name] for name in file.files if name.startswith("table_")}
             return state, tables
-    except FileError:
-        raise
     # a damaged file may say anything of itself, also that it is encrypted
     except (OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile):
         return None
@@ -101,13 +98,14 @@ def _check_place(path):
     if path.is_dir():
         raise FileError(f"{path}: is a folder; allowed: the name of a file for the checkpoint")
     if path.exists() and path.stat().st_size and not _begins_as_one(path):
-        raise FileError(f"{path}: {_FOREIGN}")
+        raise FileError(f"{path}: holds something else than a checkpoint; allowed: the name of a new file, or of one")
     folder = next(folder for folder in path.absolute().parents if folder.exists())
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FileError(f"{path}: no checkpoint can be written below {folder}")
 
 
 def _begins_as_one(path):
-    """Whether a file begins as checkpoints do, also one that was cut off."""
+    """Whether a file begins as `save` writes it, a zip with the key as its first member; also one that was cut off."""
     with open(path, "rb") as file:
-        return file.read(2) == b"PK"
+        head = file.read(30 + len(_FIRST))
+    return head[:2] == b"PK" and head[30:] == _FIRST

@@ -20,9 +20,9 @@ from ratd.experiments.spin_up.radiation import (
     SEARCHED,
     Surroundings,
     destroyed_sizes,
-    dust_temperature,
     gas_damping_time,
     gas_drag,
+    grain_temperature,
     infrared_coefficient,
     infrared_damping,
     moment_of_inertia,
@@ -98,7 +98,7 @@ def test_dust_is_as_warm_as_sheds_what_it_takes():
         # in units of h/k: nu^2 B_nu
         return quad(lambda nu: nu**5 / math.expm1(nu / temperature), 0.0, 60.0 * temperature)[0]
 
-    one, hundred = dust_temperature([1.0, 100.0])
+    one, hundred = grain_temperature([1.0, 100.0])
     assert one == pytest.approx(16.4) and emitted(hundred) / emitted(one) == pytest.approx(100.0)
 
 

@@ -67,6 +67,8 @@ def check(config, schemas="config/schema"):
     plan = Plan(own, materials, shared["results"])
     configs.together(*(partial(_check_names, plan, name) for name in plan.figures), partial(_check_further, plan))
     configs.together(*(partial(_check_set, plan, name) for name in plan.sets))
+    if "figure3" in plan.figures:
+        _check_figure3(plan)
     return plan
 
 
@@ -79,16 +81,19 @@ def _check_names(plan, figure):
     for wanted in plan.sets_of(figure):
         if wanted not in plan.config["sets"]:
             raise InputError(f"{where} set {wanted!r}; allowed: {', '.join(plan.config['sets'])}")
-    if figure == "figure3":
-        own = plan.config["figures"][figure]
-        of_set = plan.of_set(own["set"])
-        kept, end = of_set["snapshots"], of_set["until_phi"]
-        unknown = [phi for phi in own["phi"] if phi not in kept]
-        if unknown or min(own["phi"]) > end:
-            raise InputError(
-                f"config: compression.figures.figure3.phi has {(unknown or own['phi'])[0]:g}; allowed: the snapshots "
-                f"of the set {own['set']}, {', '.join(f'{phi:g}' for phi in kept)}, one at least up to its end, {end:g}"
-            )
+
+
+def _check_figure3(plan):
+    """Raise InputError unless the run of figure 3 keeps positions at the filling factors that it shows."""
+    own = plan.config["figures"]["figure3"]
+    of_set = plan.of_set(own["set"])
+    kept, end = of_set["snapshots"], of_set["until_phi"]
+    unknown = [phi for phi in own["phi"] if phi not in kept]
+    if unknown or min(own["phi"]) > end:
+        raise InputError(
+            f"config: compression.figures.figure3.phi has {(unknown or own['phi'])[0]:g}; allowed: the snapshots "
+            f"of the set {own['set']}, {', '.join(f'{phi:g}' for phi in kept)}, one at least up to its end, {end:g}"
+        )
 
 
 def _check_further(plan):

@@ -460,4 +460,4 @@ def _check_runs(runs):
 
 def _is_same(one, other):
     """Whether two runs are one: clusters of other seeds never have the same pressures."""
-    return "pressure" in one and "pressure" in other and one["pressure"].equals(other["pressure"])
+    return one["pressure"].equals(other["pressure"])

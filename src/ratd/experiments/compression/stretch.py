@@ -104,11 +104,12 @@ def stretch(
     """
     if axes not in tuple(AXES):
         raise InputError(f"axes is {axes!r}; allowed are {', '.join(AXES)}.")
-    if not (isinstance(compressed, Grain) or _has_state(compressed)):
+    filled = isinstance(compressed, Grain)
+    if not (filled or _has_state(compressed)):
         raise InputError("compressed must be a ratd.Grain, or what ratd.compress returned, with the state at its end.")
-    if isinstance(compressed, Grain) and box_length is None:
+    if filled and box_length is None:
         raise InputError("box_length is missing; a ratd.Grain needs that of the periodic box which it fills.")
-    if not isinstance(compressed, Grain) and box_length is not None:
+    if not filled and box_length is not None:
         raise InputError("box_length belongs to a ratd.Grain; what ratd.compress returned has its own.")
     if not isinstance(unload, bool):
         raise InputError(f"unload is {unload!r}; it must be True or False.")
@@ -116,7 +117,6 @@ def stretch(
     law = law_of(law, compression_law)
     if long_steps is not None:
         check_stiffness(law, "give long_steps=None")
-    filled = isinstance(compressed, Grain)
     cluster = Cluster(compressed) if filled else None
     attrs = attributes(cluster) if filled else compressed.attrs
     if not filled and repr(law) != attrs["law"]:

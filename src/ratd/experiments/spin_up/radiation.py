@@ -21,10 +21,10 @@ __all__ = [
     "SEARCHED",
     "Surroundings",
     "destroyed_sizes",
-    "dust_temperature",
     "energy_density",
     "gas_damping_time",
     "gas_drag",
+    "grain_temperature",
     "infrared_coefficient",
     "infrared_damping",
     "moment_of_inertia",
@@ -177,7 +177,7 @@ def infrared_damping(size, strength, around=DIFFUSE, inertia_ratio=1.0, coeffici
     return coefficient * np.cbrt(np.square(strength)) * 1e-7 / np.asarray(size) * gas
 
 
-def dust_temperature(strength, at_one=SILICATE_TEMPERATURE):
+def grain_temperature(strength, at_one=SILICATE_TEMPERATURE):
     """Temperature [K] of a grain in light of a strength U.
 
     Parameters

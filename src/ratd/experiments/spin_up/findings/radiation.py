@@ -52,9 +52,9 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
         " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With " greatest" behind it the
         largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
-        drags. With "over" for "ours" ours over the printed one. ``radiation.most error``, the
-        greatest relative error of ours, and, without errors, for `shown` with " first" the
-        first loss in place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
+        drags. With "over" for "ours" ours over the printed one. "radiation.most error" is the greatest relative
+        error of ours for the material of `shown`. For `shown` also, without errors, with " first" the first loss in
+        place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
     """
     values = {}
     for behind, how in (("", {}), (" porous", {"porous": True}), (" cool", {"coefficient": SILICATE})):
