@@ -18,6 +18,7 @@ from ratd.experiments.collision.figures.snapshots import origin_of, positions
 from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.compression.command import pressure_at
 from ratd.experiments.compression.files import runs
+from ratd.experiments.saved import KNOWN_BY
 from ratd.experiments.spin_up import command, run_files
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -242,6 +243,34 @@ def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
     assert done.exit_code == 0 and "seed 2: 5 monomers, 4 contacts, porosity" in done.stdout
 
 
+def saved_runs(folder):
+    """One run of each experiment, saved as a user does, and what `show` must say of it."""
+    cluster = ratd.grow_bcca(32, material="ice", seed=1)
+    pressed = ratd.compress(cluster, 1e-4, 0.25, snapshots=(0.1,))
+    pulled = ratd.stretch(pressed, 1e-4)
+    spun = ratd.spin_up(make_grain(n=4), epsilon=1)
+    two = ratd.build_cluster(np.full(6, 3e-7), 1.0e-6, "silica", seed=1)
+    met = ratd.collide(two, two, 20.0, duration=2e-7)
+    for name, run in (("compress", pressed), ("stretch", pulled), ("spin_up", spun), ("collide", met)):
+        run.to_netcdf(folder / f"{name}.nc")
+    return {
+        "compress": f"P at phi 0.2 = {pressure_at(pressed, 0.2):.4g} Pa",
+        "stretch": f"tensile strength = {pulled.attrs['tensile_strength']:.4g} Pa",
+        "spin_up": f"omega_disr = {float(ratd.disruption(spun)['omega_disr']):.4g} rad/s",
+        "collide": "12 spheres at 20 m/s",
+    }
+
+
+def test_runs_that_a_user_saved_are_shown(tmp_path):
+    for name, said in saved_runs(tmp_path).items():
+        done = run("show", tmp_path / f"{name}.nc")
+        assert done.exit_code == 0 and said in done.stdout, done.output
+        assert (tmp_path / f"{name}.png").read_bytes()[1:4] == b"PNG"
+    ratd.evolve(np.zeros((1, 3)), [1e-7], duration=1e-9, timestep=1e-10).to_netcdf(tmp_path / "other.nc")
+    done = run("show", tmp_path / "other.nc")
+    assert done.exit_code == 1 and "other.nc: holds none of these; allowed: files of spinup" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -276,6 +305,7 @@ def test_every_subcommand_is_there():
         assert import_module(home).command.name == name
     for kind, home in SHOWN.items():
         assert kind in HOMES and callable(import_module(home).show)
+    assert KNOWN_BY.keys() <= SHOWN.keys()
 
 
 def test_the_module_can_be_run(tmp_path):

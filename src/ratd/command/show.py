@@ -4,15 +4,15 @@ from importlib import import_module
 from pathlib import Path
 
 import click
-import netCDF4
 import numpy as np
 from matplotlib.colors import to_rgb
 
 from ratd.aggregates.files import read_grains
 from ratd.aggregates.particles import read_particles
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.command import out_option, unit_option
+from ratd.experiments.saved import kind_in
 from ratd.geometry.shape import Shape, centre_of_mass
 from ratd.pictures.snapshots import OTHERS
 from ratd.pictures.spheres import render, view_axes
@@ -45,13 +45,13 @@ def _home(path):
     """Module that shows files of the kind of a file."""
     from ratd.command import SHOWN
 
-    try:
-        with netCDF4.Dataset(path) as file:
-            kind = getattr(file, "file_kind", None)
-    except OSError as error:
-        raise FileError(f"{path}: cannot be read as netCDF ({error})") from error
+    kind, _ = kind_in(path)
     if kind not in SHOWN:
-        raise InputError(f"{path}: is a file of {kind}; allowed: files of {', '.join(SHOWN)}, or of spheres")
+        what = "holds none of these" if kind is None else f"is a file of {kind}"
+        raise InputError(
+            f"{path}: {what}; allowed: files of {', '.join(SHOWN)}, what ratd.spin_up, compress, stretch or collide "
+            "returned, saved with to_netcdf, or spheres"
+        )
     return SHOWN[kind]
 
 

@@ -16,7 +16,7 @@ from ratd.experiments.collision.figures.figure8 import figure8
 from ratd.experiments.collision.figures.masses import masses, rows_by_cluster
 from ratd.experiments.collision.figures.page import page
 from ratd.experiments.collision.figures.scaling import scaling
-from ratd.experiments.collision.figures.snapshots import origin_of, picture, positions, row_of
+from ratd.experiments.collision.figures.snapshots import colours_of, origin_of, picture, positions, row_of
 from ratd.experiments.collision.plan import Plan
 from ratd.experiments.collision.tables import (
     COLUMNS,
@@ -178,6 +178,15 @@ def test_the_queue_keeps_snapshots_of_what_is_shown_alone(done):
     # each of the two came as one piece, the giant first of its own
     origin = origin_of(positions(shown)[2])
     assert origin.tolist() == [0] * (len(origin) // 2) + [1] * (len(origin) // 2)
+    # radii are told apart by colours and a scale; equal ones tell the clusters apart, without a scale
+    half = len(origin) // 2
+    radius, piece = shown["radius"].values, positions(shown)[2]
+    assert (colours_of(radius, piece)[:half] == colours_of(radius, piece)[half:]).all()
+    assert len(np.unique(colours_of(radius, piece), axis=0)) > 1 and len(picture(shown, 1e-7).axes) == 7
+    equal = shown.assign(radius=("monomer", np.full_like(radius, radius.min())))
+    first, second = np.split(colours_of(equal["radius"].values, piece), 2)
+    assert len(np.unique(first, axis=0)) == len(np.unique(second, axis=0)) == 1 and (first[0] != second[0]).any()
+    assert len(picture(equal, 1e-7).axes) == 6
 
 
 def test_pictures_and_page_of_a_collision_with_snapshots(done, tmp_path):

@@ -14,6 +14,7 @@ from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
 from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several
 from ratd.experiments.collision.stages import contact_of
+from ratd.experiments.saved import runs_in
 from ratd.laws.chosen import law_of
 from ratd.laws.dmt_with_friction import dmt
 from ratd.pictures.collision_page import collision_page
@@ -107,7 +108,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    found = rows(io.read(path, "collisions"), "collisions")
+    found = [_as_row(run, path) for run in runs_in(path, lambda path: rows(io.read(path, "collisions"), "collisions"))]
     n = found[0]["n_monomers"].item()
     lines = [
         f"{plural(len(found), 'rotation')} of {plural(n, 'sphere')} at {found[0]['velocity'].item():g} m/s, mean ± "
@@ -129,3 +130,11 @@ def show(path, out):
             lines += [f"{figure} written", f"{page} written"]
             break
     return lines
+
+
+def _as_row(run, path):
+    """Row of a file of collisions, also of a run that its user saved."""
+    if "impact_energy" not in run.attrs:
+        return run
+    law = str(run.attrs["law"]).split("(")[0].lower()
+    return collision_row(run, sample=0, law=law, cluster=path.stem)

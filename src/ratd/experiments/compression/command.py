@@ -13,6 +13,7 @@ from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
 from ratd.experiments.compression.run import FASTEST, compress
+from ratd.experiments.saved import runs_in
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
 from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
@@ -82,7 +83,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    found = runs(io.read(path, "compression"))
+    found = runs_in(path, lambda path: runs(io.read(path, "compression")))
     first = found[0].attrs
     lines = [
         f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, mean ± standard deviation; static "

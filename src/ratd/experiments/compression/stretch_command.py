@@ -14,6 +14,7 @@ from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
 from ratd.experiments.compression.stretch import AXES, stretch
+from ratd.experiments.saved import runs_in
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -79,12 +80,12 @@ def show(path, out):
     list of str
         What to say.
     """
-    file = io.read(path, "stretched")
-    found = rows(file, "stretched")
+    found = runs_in(path, _pulls)
     first = found[0].attrs
-    expected = formula(file)
-    strength, phi, pressed = (file[name].values for name in ("tensile_strength", "phi_strength", "residual_pressure"))
-    ways = "x" if file.attrs["axes"] == "x" else "all three axes"
+    expected = [formula(run) for run in found]
+    names = "tensile_strength", "phi_strength", "residual_pressure"
+    strength, phi, pressed = (np.array([run.attrs[name] for run in found]) for name in names)
+    ways = "x" if first["axes"] == "x" else "all three axes"
     lines = [
         f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, compressed to phi = "
         f"{first['phi_start']:.3g} and pulled along {ways}, mean ± standard deviation:",
@@ -98,10 +99,16 @@ def show(path, out):
     return [*lines, f"{figure} written"]
 
 
-def formula(file):
-    """Tensile strength [Pa] by Tatsuuma et al. (2019) of each row of a file of pulls, at the start, (rows,)."""
-    gamma, radius = file["surface_energy"].item(), file["monomer_radius"].values
-    return tensile_strength_tatsuuma2019(gamma, radius, file["phi_start"].values)
+def _pulls(path):
+    """Pulls of a file, as `ratd.stretch` returns them but for the state at the end."""
+    file = io.read(path, "stretched")
+    return [run.assign_attrs(surface_energy=file["surface_energy"].item()) for run in rows(file, "stretched")]
+
+
+def formula(run):
+    """Tensile strength [Pa] by Tatsuuma et al. (2019) of what is pulled, at the start."""
+    names = "surface_energy", "monomer_radius", "phi_start"
+    return tensile_strength_tatsuuma2019(*[run.attrs[name] for name in names])
 
 
 @styled

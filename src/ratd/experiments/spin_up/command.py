@@ -8,6 +8,7 @@ import click
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.saved import runs_in
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -79,7 +80,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    runs = read_runs(path)
+    runs = runs_in(path, read_runs)
     marks = [disruption(run) for run in runs]
     n = runs[0].attrs["initial_n_monomers"]
     lines = [f"{plural(len(runs), 'start')} of {plural(n, 'monomer')}, mean ± standard deviation:"]

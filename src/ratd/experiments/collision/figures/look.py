@@ -38,8 +38,8 @@ CLUSTERS = {
     "mrn": "MRN, all",
 }
 """Name in config/collision_study.yaml -> text."""
-LAWS = {"velocity": "friction by rate", "spring": "friction by springs"}
-"""Name of a law in the configs -> text."""
+LAWS = {"velocity": "friction by rate", "spring": "friction by springs", "dmt": "DMT", "jkr": "JKR"}
+"""Name of a law in the configs and on the command line -> text."""
 
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
