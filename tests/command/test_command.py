@@ -111,6 +111,8 @@ def test_two_clusters_collide_from_their_files(tmp_path):
     assert float(said[1]) == pytest.approx(np.mean([row["N_s"].item() for row in found]), rel=1e-3, abs=1e-4)
     assert one.with_name("one_collided.png").read_bytes()[1:4] == b"PNG"
     assert one.with_name("one_collided.html").read_text().startswith("<!doctype html>")
+    long = run("collide", one, *how, "--timestep", "1", "--out", tmp_path / "long")
+    assert long.exit_code == 1 and "timestep is 1 s; the smallest sphere, 3e-07 m, allows at most" in long.stderr
     slow = run("collide", one, "--material", "silica", "--velocity", "0.001")
     assert slow.exit_code == 1 and "in which the two do not meet" in slow.stderr
     # the same rotations of one with itself are other collisions
@@ -303,6 +305,8 @@ def test_the_answer_says_what_is_not_known():
 def test_every_subcommand_is_there():
     for name, home in COMMANDS.items():
         assert import_module(home).command.name == name
+        told = run(name, "--help")
+        assert told.exit_code == 0 and "Options:" in told.stdout and not told.stderr
     for kind, home in SHOWN.items():
         assert kind in HOMES and callable(import_module(home).show)
     assert KNOWN_BY.keys() <= SHOWN.keys()

@@ -55,6 +55,8 @@ class _Commands(click.Group):
                 warnings.simplefilter("once", UserWarning)
                 warnings.showwarning = lambda message, *where, **more: click.echo(f"warning: {message}", err=True)
                 return super().invoke(context)
+        except click.exceptions.Exit:  # a RuntimeError too: --help has said all
+            raise
         except (InputError, FileError, RuntimeError) as error:
             click.echo(f"error: {error}", err=True)
             sys.exit(1)

@@ -46,7 +46,10 @@ SNAPSHOTS = 5
 @click.option(
     "--duration", default=DURATION, show_default=True, type=click.FloatRange(0, 1e-3, min_open=True), help="[s]"
 )
-def command(file, material, unit, starts, out, velocity, other, impact_parameter, law, duration):
+@click.option(
+    "--timestep", type=click.FloatRange(0, min_open=True), help="[s]  [default: by the smallest sphere and the law]"
+)
+def command(file, material, unit, starts, out, velocity, other, impact_parameter, law, duration, timestep):
     """Shoot an aggregate at itself, or at another one.
 
     Each start is another rotation of both. The answer is the mean over them with their standard deviation. The
@@ -59,6 +62,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     grains = [aggregate(path, unit, material) for path in files]
     out = file.with_name(f"{file.stem}_collided") if out is None else out
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
+    how |= {} if timestep is None else {"timestep": timestep}
     source = source_hash(modules=["ratd.experiments.collision.run", *OF_STARTS])
     made_with = provenance(source, {"material": material, "unit": unit, **how}, files)
     contact = contact_of(law_of(law, dmt))
