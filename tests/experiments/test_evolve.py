@@ -1,5 +1,7 @@
 """`evolve` as a user meets it: what is refused, what comes back, in which order, after a kill, and free bodies."""
 
+import warnings
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -257,3 +259,30 @@ def test_a_long_record_is_made_in_calls(tmp_path, monkeypatch):
         evolve(*pair, **how, checkpoint=tmp_path / "evolve", progress=stop)
     assert 0.0 < parts[0] < parts[-1] < 1.0
     xr.testing.assert_identical(evolve(*pair, **how, checkpoint=tmp_path / "evolve"), whole)
+
+
+def test_a_run_of_days_is_warned_of_once(monkeypatch):
+    """As one whose duration was meant in ns is: in one call of the engine 1e5 of 4e12 steps are made."""
+
+    class Stopped(Exception):
+        pass
+
+    calls = []
+
+    def stopping(*arguments):
+        calls.append(arguments)
+        if len(calls) == 4:
+            raise Stopped
+        return run(*arguments)
+
+    run = module.run
+    monkeypatch.setattr(module, "run", stopping)
+    monkeypatch.setattr(intervals, "FORECAST", 0.0)
+    with pytest.warns(UserWarning, match=r"duration is 10 s, .* steps of .* s: this takes some .* days") as found:
+        with pytest.raises(Stopped):
+            evolve(**GOOD | {"duration": 10.0})
+    assert len(found) == 1
+    monkeypatch.setattr(module, "run", run)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        evolve(**GOOD)

@@ -1,5 +1,7 @@
 """Any set of spheres, moved by any law in open space or in a box; energies, momenta and pieces against time."""
 
+import warnings
+
 import numpy as np
 import xarray as xr
 
@@ -163,7 +165,7 @@ def evolve(
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
-    begun, moved = state.scalar[TIME], _moved(rows, rows[0])
+    foresee, begun, moved = intervals.Interval(intervals.FORECAST), state.scalar[TIME], _moved(rows, rows[0])
     while len(rows) <= records:
         goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
         state, code = run(state, law, drive, box, integrator, goal)
@@ -178,10 +180,27 @@ def evolve(
                 _check_balance(rows[-wait], moved, balance)
         if checkpoint is not None and to_save.passed():
             checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
+        if foresee is not None and foresee.passed():
+            foresee = _warn_of_long(_to_go(to_tell, begun, state, duration), duration, state.scalar[DT])
         if progress is not None and to_tell.passed():
-            time = state.scalar[TIME]
-            progress(time / duration, to_tell.elapsed() * (duration - time) / (time - begun), rows[-1])
+            progress(state.scalar[TIME] / duration, _to_go(to_tell, begun, state, duration), rows[-1])
     return _dataset(state, rows, pictures, law, box)
+
+
+def _to_go(since, begun, state, duration):
+    """Seconds to go of a run that goes on since an interval began, at a time `begun` of its own."""
+    time = state.scalar[TIME]
+    return since.elapsed() * (duration - time) / (time - begun)
+
+
+def _warn_of_long(to_go, duration, timestep):
+    """Warn of a run that will take days, which a duration in another unit than s makes of it."""
+    if to_go > intervals.LONG:
+        warnings.warn(
+            f"duration is {duration:g} s, {duration / timestep:.2g} steps of {timestep:.2g} s: this takes some "
+            f"{to_go / intervals.LONG:.1g} days",
+            stacklevel=3,
+        )
 
 
 def _arrays(position, radius, velocity, spin):

@@ -1,13 +1,17 @@
-"""How often a run that goes on keeps a checkpoint and says how far it is."""
+"""How often a run that goes on keeps a checkpoint and says how far it is, and when it warns that it is long."""
 
 import time
 
-__all__ = ["CHECKPOINT", "PROGRESS", "Interval"]
+__all__ = ["CHECKPOINT", "FORECAST", "LONG", "PROGRESS", "Interval"]
 
 CHECKPOINT = 60.0
 """Seconds between two checkpoints."""
 PROGRESS = 2.0
 """Seconds between two calls of `progress`."""
+FORECAST = 30.0
+"""Seconds after which it is foreseen how long a run takes."""
+LONG = 86400.0
+"""Seconds to go that its user is warned of."""
 
 
 class Interval:
