@@ -26,7 +26,7 @@ PLAN, COMPRESSION, COLLISIONS = checked(
         for plan in (spin_up_plan, compression_plan, collision_plan)
     ),
 )
-say(PLAN.notes)
+say([*PLAN.notes, *COLLISIONS.notes])
 
 
 pathvars:

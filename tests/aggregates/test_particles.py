@@ -45,6 +45,16 @@ def test_a_grain_comes_back(tmp_path, grain, suffix, unit):
 def test_a_box_comes_back(tmp_path, grain, suffix):
     write_particles(Particles(grain.position, grain.radius, BOX), tmp_path / f"grain.{suffix}")
     np.testing.assert_allclose(read_particles(tmp_path / f"grain.{suffix}").box, BOX)
+    with pytest.warns(UserWarning, match="grain.csv: a .csv file does not hold the periodic box; use .xyz"):
+        write_particles(Particles(grain.position, grain.radius, BOX), tmp_path / "grain.csv")
+
+
+def dump(style, columns, rows):
+    """A dump of two spheres that names the style of its units."""
+    return (
+        f"ITEM: UNITS\n{style}\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
+        f"ITEM: ATOMS {columns}\n{rows}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -62,6 +72,12 @@ def test_a_box_comes_back(tmp_path, grain, suffix):
         ("a.csv", "radius,x,y,z,name\n20,0,0,0,a\n20,0,0,40,b\n"),
         ("a.csv", "0,0,0,20\n0,0,4e1,20\n"),
         ("a.xyz", "2\nProperties=pos:R:3:r:R:1\n0 0 0 20\n0 0 40 20\n"),
+        # two lines of header, as numpy.savetxt writes them
+        ("a.txt", "# made by me\n# r[um] x[um] y[um] z[um]\n0.02 0 0 0\n0.02 0 0 0.04\n"),
+        ("a.txt", "x [um] y [um] z [um] r [um]\n0 0 0 0.02\n0 0 0.04 0.02\n"),
+        ("a.xyz", "\ufeff2\nProperties=pos:R:3:r:R:1 unit=µm\n0 0 0 0.02\n0 0 0.04 0.02\n"),
+        ("a.dump", dump("real", "id radius x y z xu yu zu", "1 200 1 1 1 0 0 0\n2 200 1 1 1 0 0 400\n")),
+        ("a.dump", dump("nano", "id radius x y z", "1 20 0 0 0\n2 20 0 0 40\n")),
         (
             "a.dump",
             "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
@@ -86,6 +102,8 @@ def test_files_as_others_write_them(tmp_path, name, text):
             "0 0 0 -20\n",
             "holds 1 spheres; allowed: finite numbers x, y, z and radii above 0; sphere 1 has",
         ),
+        ("a.txt", "x y z r name\n0 0 0 20\n", "its first line names 5 columns, and the next one has 4"),
+        ("a.xyz", "1\nas Newton's apple\n0 0 0 20\n", ".it has no radii; its second line must be"),
         ("a.xyz", "", "it has 0 frames, and frame -1 was asked for"),
         ("a.csv", "x,y,z,r\n0,0,zero,20\n", "is no .csv file of spheres .could not convert string to float: 'zero'"),
         ("a.xyz", "3\nProperties=pos:R:3:radius:R:1\n0 0 0 20\n", "the last frame has 3 lines instead of 5"),
@@ -139,6 +157,14 @@ def test_a_unit_in_brackets_is_known_or_refused(tmp_path, name, length):
     xyz = tmp_path / "a.xyz"
     xyz.write_text("1\nProperties=species:S:1:pos:R:3:radius:R:1 units=micron\nX 0 0 0 0.02\n")
     assert read_particles(xyz).radius == pytest.approx(2e-8)
+
+
+def test_a_dump_in_units_without_a_length_needs_one(tmp_path):
+    path = tmp_path / "a.dump"
+    path.write_text(dump("lj", "id radius x y z", "1 20 0 0 0\n2 20 0 0 40\n"))
+    with pytest.raises(InputError, match="is in the units lj of LAMMPS; allowed: si, cgs.* or give the unit of its"):
+        read_particles(path)
+    assert read_particles(path, unit="nm").radius == pytest.approx(20e-9)
 
 
 def test_wrong_arguments(tmp_path, grain):

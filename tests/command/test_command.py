@@ -7,6 +7,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+import xarray as xr
 from click.testing import CliRunner
 
 import ratd
@@ -268,6 +269,12 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         done = run("show", tmp_path / f"{name}.nc")
         assert done.exit_code == 0 and said in done.stdout, done.output
         assert (tmp_path / f"{name}.png").read_bytes()[1:4] == b"PNG"
+    xr.load_dataset(tmp_path / "compress.nc")[["phi", "pressure", "snapshot_phi"]].to_netcdf(tmp_path / "part.nc")
+    done = run("show", tmp_path / "part.nc")
+    assert done.exit_code == 1 and "part.nc: is not the whole of a run, as ratd" in done.stderr
+    assert "phi_mean" in done.stderr
+    done = run("show", tmp_path / "compress.nc", "--unit", "um")
+    assert done.exit_code == 1 and "leave out --unit and --material" in done.stderr
     ratd.evolve(np.zeros((1, 3)), [1e-7], duration=1e-9, timestep=1e-10).to_netcdf(tmp_path / "other.nc")
     done = run("show", tmp_path / "other.nc")
     assert done.exit_code == 1 and "other.nc: holds none of these; allowed: files of spinup" in done.stderr
@@ -283,6 +290,8 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         (("spin-up", "{chain}", *FAST, "--unit", "um"), "states that its lengths are in nm, and was to be read in um"),
         (("spin-up", "{chain}", *FAST, "--out", ""), "is a folder; allowed: a stem in it"),
         (("show", "."), "'.' is a directory"),
+        (("collide", "{chain}", "--material", "q-S", "--velocity", "nan"), "nan is not a finite number"),
+        (("spin-up", "{chain}", "--material", "q-S", "--epsilon", "nan"), "nan is not a finite number"),
         (("show", "none.nc"), "error: none.nc: cannot be read as netCDF"),
         (("melt", "{chain}"), "No such command 'melt'"),
     ],

@@ -233,7 +233,7 @@ HOLD_LOCK = """
     import logging, sys, time
     from pathlib import Path
     from ratd.pipeline.partial import locked
-    with locked(sys.argv[1], logging.getLogger()):
+    with locked(sys.argv[1], print):
         print("ready", flush=True)
         time.sleep(float(sys.argv[2]))
         Path(sys.argv[1] + ".done").write_text("")
@@ -242,7 +242,7 @@ HOLD_LOCK = """
 
 def test_lock_makes_the_second_one_wait(tmp_path, caplog):
     process = start_python(HOLD_LOCK, tmp_path / "lock", 0.5)
-    with caplog.at_level(logging.INFO), partial.locked(tmp_path / "lock", logging.getLogger()):
+    with caplog.at_level(logging.INFO), partial.locked(tmp_path / "lock", logging.getLogger().info):
         assert (tmp_path / "lock.done").exists()
     assert "waiting for it" in caplog.text
     process.wait()
@@ -253,7 +253,7 @@ def test_lock_ends_with_a_killed_process(tmp_path):
     process.kill()
     process.wait()
     start = time.monotonic()
-    with partial.locked(tmp_path / "lock", logging.getLogger()):
+    with partial.locked(tmp_path / "lock", logging.getLogger().info):
         assert time.monotonic() - start < 100
     assert not (tmp_path / "lock.done").exists()
 

@@ -71,6 +71,8 @@ def grow(type, a_eff, material, seed, *, distribution=None, migration="random"):
     """
     material = get_material(material)
     distribution = RadiusDistribution() if distribution is None else distribution
+    if not isinstance(distribution, RadiusDistribution):
+        raise InputError(f"distribution is {distribution!r}; it must be a ratd.aggregates.radii.RadiusDistribution.")
     migrations = TYPES[_check_type(type)]
     a_eff = _check_a_eff(a_eff, type, distribution)
     seed = check_seed(seed)

@@ -3,8 +3,9 @@
 import os
 import re
 import shlex
+import warnings
 from io import StringIO
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,6 +26,8 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
 _STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
 """Unit of length -> style of units in LAMMPS, which its dumps may name."""
+_LENGTHS = {style: unit for unit, style in _STYLES.items()} | {"real": "angstrom"}
+"""Style of units in LAMMPS -> unit of length; others have none that dust is measured in."""
 _BRACKETS = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
 _OTHER_NAMES = {"micron": "um", "microns": "um", "micrometer": "um", "a": "angstrom", "å": "angstrom"}
 """Other names of `UNITS`."""
@@ -62,12 +65,13 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     Parameters
     ----------
     path : path-like
-        By its suffix: ``.txt``, ``.dat`` (columns x y z r, with or without their names in the first line) or ``.csv``;
+        By its suffix: ``.txt``, ``.dat`` (columns x y z r, with or without their names above) or ``.csv``;
         ``.xyz``, ``.extxyz`` (extended XYZ with a column ``radius``); ``.dump``, ``.lammpstrj`` (text dump of LAMMPS
         with x y z or xu yu zu, and radius).
     unit : str, optional
         Of all lengths in the file: m, cm, mm, um, nm or angstrom. If not given, that which the file states (``x [um]``
-        in the names of its columns, ``unit=um`` in extended XYZ), or nm. A unit in brackets that is none is an error.
+        in the names of its columns, ``unit=um`` in extended XYZ, the style of units of LAMMPS), or nm. A unit in
+        brackets that is none is an error.
     frame : int, optional
         Which one, in a file of several; the last if not given.
 
@@ -104,6 +108,13 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         raise FileError(
             f"{path}: holds {len(values)} spheres; allowed: finite numbers x, y, z and radii above 0{which}"
         )
+    if stated is not None and stated not in UNITS:
+        if unit is None:
+            raise InputError(
+                f"{path}: is in the units {stated} of LAMMPS; allowed: {', '.join(_LENGTHS)}, or give the unit of its "
+                "lengths"
+            )
+        stated = None
     if None not in (unit, stated) and unit != stated:
         raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
     unit = unit or stated or "nm"
@@ -149,14 +160,18 @@ def _read_table(path, frame):
     separator = "," if path.suffix == ".csv" else r"\s+"
     # some programs begin a file with a mark of its encoding
     lines = path.read_text(encoding="utf-8-sig").splitlines()
-    header = lines[0].lstrip("# ") if lines else ""
-    if _names_columns(header, separator):
-        lines[0] = header
+    # the names of the columns may stand in a comment, below others
+    for k, line in enumerate(takewhile(lambda line: line.startswith("#"), lines)):
+        if _names_columns(line.lstrip("# "), separator):
+            lines[k] = line.lstrip("# ")
+            break
     lines = [line.partition("#")[0].strip() for line in lines]
     lines = [line for line in lines if line] or [""]
     words = _words(lines[0], separator)
     named = any(re.match(r"[a-z]", word) and word not in ("nan", "inf") for word in words)
     table = pd.read_csv(StringIO("\n".join(lines[int(named) :])), sep=separator, header=None)
+    if named and len(words) != len(table.columns):
+        raise ValueError(f"its first line names {len(words)} columns, and the next one has {len(table.columns)}")
     names = ["x", "y", "z", "radius"]
     if not named and len(table.columns) > len(names):
         raise ValueError(f"it has {len(table.columns)} columns; more than x y z r need their names in the first line")
@@ -178,8 +193,14 @@ def _unit(name):
 
 
 def _words(line, separator):
-    """Words of a line of a table."""
-    return [word.strip().strip('"').lower().replace("µ", "u").replace("μ", "u") for word in re.split(separator, line)]
+    """Words of a line of a table; a unit in brackets belongs to the name before it."""
+    line = re.sub(r"\s+(?=[\[(])", "", line)
+    return [_plain(word.strip().strip('"')) for word in re.split(separator, line)]
+
+
+def _plain(word):
+    """A word in small letters, with u for the letter mu, of which there are two."""
+    return word.lower().replace("µ", "u").replace("μ", "u")
 
 
 def _name(word):
@@ -213,10 +234,13 @@ def _chosen(frames, frame):
 
 
 def _read_xyz(path, frame):
-    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = path.read_text(encoding="utf-8-sig").splitlines()
     frames = _frames(lines, lambda lines: int(lines[0]) + 2)
     lines = _chosen(frames, frame)
-    about = dict(word.partition("=")[::2] for word in shlex.split(lines[1]))
+    try:
+        about = dict(word.partition("=")[::2] for word in shlex.split(lines[1]))
+    except ValueError:  # a quotation that does not end, as in words of everyday language
+        about = {}
     if "Properties" not in about:
         raise ValueError(
             "it has no radii; its second line must be that of extended XYZ: Properties=species:S:1:pos:R:3:radius:R:1"
@@ -234,7 +258,7 @@ def _read_xyz(path, frame):
     table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
     periodic = _periodic(about.get("pbc", "T T T" if "Lattice" in about else "F F F").split(), "T", "True", "true", "1")
     stated = about.get("unit", about.get("units"))
-    stated = None if stated is None else _unit(stated.lower())
+    stated = None if stated is None else _unit(_plain(stated))
     if "Lattice" not in about or not periodic:
         return table, None, stated
     return table, _diagonal(np.array(about["Lattice"].split(), dtype=float).reshape(3, 3)), stated
@@ -256,10 +280,10 @@ def _diagonal(lattice):
 
 def _read_dump(path, frame):
     """One step of a text dump of LAMMPS."""
-    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = path.read_text(encoding="utf-8-sig").splitlines()
     # said once, before the first frame
     style = next((after for line, after in pairwise(lines) if line.startswith("ITEM: UNITS")), None)
-    stated = next((unit for unit, name in _STYLES.items() if name == style), None)
+    stated = None if style is None else _LENGTHS.get(style.strip(), style.strip())
 
     def length(lines):
         return section(lines, "ITEM: ATOMS") + 1 + int(lines[section(lines, "ITEM: NUMBER OF ATOMS") + 1])
@@ -276,6 +300,8 @@ def _read_dump(path, frame):
     if bounds.shape[1] != 2:
         raise ValueError("the box is not rectangular; allowed: edges along x, y and z")
     names = lines[begin].split()[2:]
+    if {"xu", "yu", "zu"} <= set(names):  # beside those that are wrapped into the box
+        names = [f"{name}_wrapped" if name in ("x", "y", "z") else name for name in names]
     body = StringIO("\n".join(lines[begin + 1 :]))
     table = pd.read_csv(body, sep=r"\s+", header=None, names=[_COLUMNS.get(name, name) for name in names])
     if "id" in table:
@@ -298,7 +324,8 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
 
     Notes
     -----
-    A unit other than nm is stated in the file: in the names of the columns (``x[um]``), or as LAMMPS states it.
+    A unit other than nm is stated in the file: in the names of the columns (``x[um]``), or as LAMMPS states it. Text
+    and CSV do not hold the periodic box, of which a warning tells.
 
     Besides positions and radii the columns are: ``fragment``, the number of the fragment or piece, 0 being the largest;
     ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
@@ -318,6 +345,8 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
     if path.suffix in _TABLES:
         if len(frames) > 1:
             raise InputError(f"{path}: a {path.suffix} file holds one frame, but there are {len(frames)}; use .xyz")
+        if frames[0][1] is not None:
+            warnings.warn(f"{path}: a {path.suffix} file does not hold the periodic box; use .xyz", stacklevel=2)
         text = frames[0][0].rename(columns={"radius": "r"}).assign(**_scaled(frames[0][0], factor, radius="r"))
         if unit != "nm":
             text = text.rename(columns={name: f"{name}[{unit}]" for name in "xyzr"})

@@ -165,7 +165,7 @@ def mix(name, fractions, table=None):
     Sect. 2 and Table 2 of Reissl et al. 2024. The table prints co-S rounded (E 169 GPa, nu 0.27, rho 3707 kg m-3);
     the mean of its own four minerals is E 168.2 GPa, nu 0.271, rho 3715 kg m-3.
     """
-    _check_fractions(fractions, f"of the mixture {name!r}")
+    fractions = _checked_fractions(fractions, f"of the mixture {name!r}")
     parts = [(float(fraction), get_material(part, table)) for part, fraction in fractions.items()]
     means = {
         field.name: math.fsum(fraction * getattr(part, field.name) for fraction, part in parts)
@@ -196,7 +196,7 @@ def element_ratios(fractions, composition=None):
         If a fraction is negative, if they do not add up to 1, or if the composition of a mineral is unknown.
     """
     composition = COMPOSITION if composition is None else composition
-    _check_fractions(fractions, "of the minerals")
+    fractions = _checked_fractions(fractions, "of the minerals")
     for mineral in fractions:
         if mineral not in composition:
             raise InputError(f"The composition of {mineral!r} is unknown; known are {', '.join(composition)}.")
@@ -246,12 +246,20 @@ def get_material(material, table=None):
     return table[material]
 
 
-def _check_fractions(fractions, what):
-    if not fractions or any(not fraction >= 0.0 for fraction in fractions.values()):
-        raise InputError(f"The mole fractions {what} are {dict(fractions)}; each must be a number of at least 0.")
+def _checked_fractions(fractions, what):
+    """Mole fractions as a dict of str to float."""
+    try:
+        fractions = dict(fractions)
+    except (TypeError, ValueError):
+        fractions = {}
+    if not fractions or any(not (is_number(fraction) and fraction >= 0.0) for fraction in fractions.values()):
+        raise InputError(
+            f"The mole fractions {what} are {fractions}; they must be a dict, each a number of at least 0."
+        )
     total = math.fsum(fractions.values())
     if abs(total - 1.0) > 1e-9:
         raise InputError(f"The mole fractions {what} add up to {total:g}; they must add up to 1.")
+    return fractions
 
 
 MATERIALS["co-S"] = mix("co-S", CO_S_FRACTIONS)

@@ -37,8 +37,23 @@ def command(file, unit, material, out):
         contacts = "" if material is None else f", {particles.grain(material).n_contacts} contacts"
         lines = _picture(particles.position, particles.radius, file.name, out, contacts)
     else:
-        lines = import_module(_home(file)).show(file, out)
+        if unit is not None or material is not None:
+            raise InputError(
+                f"{file}: holds results, which know their unit and material; leave out --unit and --material"
+            )
+        lines = _of_results(file, out)
     click.echo("\n".join(lines))
+
+
+def _of_results(path, out):
+    """Pictures and lines of a file of results."""
+    home = import_module(_home(path))
+    if kind_in(path)[1]:
+        return home.show(path, out)
+    try:
+        return home.show(path, out)
+    except (InputError, KeyError) as error:
+        raise InputError(f"{path}: is not the whole of a run, as ratd returned it ({error})") from error
 
 
 def _home(path):

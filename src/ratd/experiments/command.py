@@ -4,7 +4,7 @@ An aggregate is chaotic where contacts slip and break: a start that differs by l
 So each answer is that of several starts, whose scatter is its uncertainty.
 """
 
-import logging
+import math
 import shutil
 import time
 from pathlib import Path
@@ -25,6 +25,7 @@ from ratd.pipeline.blocks import rows
 from ratd.pipeline.partial import Block, Pieces, locked
 
 __all__ = [
+    "Finite",
     "aggregate",
     "aggregate_options",
     "answer",
@@ -40,6 +41,16 @@ OF_STARTS = (__name__,)
 """Modules of which the hash of the source of a command's runs is made besides those of its experiment."""
 SHIFT = 1e-12
 """How far the monomers of a start are moved [m], a hundredth of an atom."""
+
+
+class Finite(click.FloatRange):
+    """A range of numbers without NaN, which every comparison lets pass, and infinity."""
+
+    def convert(self, value, param, ctx):
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number", param, ctx)
+        return number
 
 
 def aggregate_options(function):
@@ -174,7 +185,7 @@ def several(target, kind, material, provenance, starts, make):
             f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
             "finish them with their own command, remove the folder, or give another --out."
         )
-    with locked(block.folder / "lock", logging.getLogger(__name__)):
+    with locked(block.folder / "lock", click.echo):
         # the same command may have ended while this one waited
         there = _starts_there(block, kind)
         try:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
-from ratd.base.materials import get_material
+from ratd.base.materials import Material, get_material
 from ratd.drives.free import rest
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
@@ -275,6 +275,8 @@ def touching_at_start(position, radius, box):
 
 def _materials(material, n):
     """List of the materials, and the number of each sphere's, (n,)."""
+    if not isinstance(material, str | Material) and np.ndim(material) == 1:  # a column of a table too
+        material = list(np.asarray(material, dtype=object))
     if not isinstance(material, list | tuple):
         return [get_material(material)], np.zeros(n, dtype=np.int64)
     if len(material) != n:

@@ -242,7 +242,7 @@ class Job:
         self._writes(kind)
         with ExitStack() as locks:
             for block in sorted(blocks, key=lambda block: block.target):
-                locks.enter_context(locked(block.folder / "lock", self.log))
+                locks.enter_context(locked(block.folder / "lock", self.log.info))
             pieces = {block.target: Pieces(block, kind) for block in blocks}
             waiting = [(block, seed) for block in blocks for seed in block.seeds if seed not in pieces[block.target]]
             every = sum(len(block.seeds) for block in blocks)

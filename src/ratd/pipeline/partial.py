@@ -138,7 +138,7 @@ def partial_folder(target):
 
 
 @contextmanager
-def locked(path, log):
+def locked(path, say):
     """Hold a lock that ends with the process, however it ends; wait while another process holds it.
 
     Two jobs for the same file can be at work at once when Snakemake alone was killed and started again: the second
@@ -148,8 +148,8 @@ def locked(path, log):
     ----------
     path : path-like
         The file to lock, made if needed.
-    log : logging.Logger
-        Told when there is something to wait for.
+    say : callable
+        ``say(text)`` is called when there is something to wait for.
     """
     path = Path(path)
     tries = 0
@@ -167,7 +167,7 @@ def locked(path, log):
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            log.info("another process is at work on the same file, waiting for it")
+            say("another process is at work on the same file, waiting for it")
             fcntl.flock(handle, fcntl.LOCK_EX)
         except OSError as error:
             raise FileError(f"{path}: cannot be locked ({error.strerror})") from error

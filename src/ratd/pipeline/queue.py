@@ -240,16 +240,9 @@ def command(words, *, module, what, config, data, load, tasks, study=None):
             print(state(wanted, what))
             return 0
         until = None if arguments.minutes is None else time.monotonic() + 60 * arguments.minutes
-        with locked(Path(plan.results, "queue.lock"), _Log(say)):
+        with locked(Path(plan.results, "queue.lock"), say):
             left = work(wanted, until=until, say=say, processes=arguments.processes)
     except (InputError, FileError) as error:
         say(f"error: {error}")
         return 1
     return 3 if left else 0
-
-
-class _Log:
-    """What `locked` takes for a log."""
-
-    def __init__(self, say):
-        self.info = say

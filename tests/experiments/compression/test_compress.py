@@ -1,5 +1,7 @@
 """Clusters that are compressed and pulled: balance, work, restart, and what is refused."""
 
+import warnings
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -17,6 +19,7 @@ from ratd.experiments.compression.static import (
     box_rate,
     face_speed,
     filling_factor_bcca,
+    inertial_tension,
     slower_than_sound_from,
     static_from,
     time_unit,
@@ -304,6 +307,24 @@ def test_a_pulled_cluster_comes_apart(run):
     assert pulled.attrs["phi_strength"] < pulled.attrs["phi_start"] == run["phi"].values[-1]
     # the tension falls once the cluster parts
     assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
+
+
+def test_the_inertia_of_a_pull_that_holds_nothing_is_warned_of(run):
+    """This cluster does not hold to its copies: what it shows is that it takes back what the box carries along."""
+    loose = ratd.compress(ratd.grow_bcca(32, material="ice", seed=1), 1e-4, 0.1)
+    place = loose["position"].values[:, 0]
+    for strain_rate in (5e-6, 2e-5):
+        with pytest.warns(UserWarning, match="is not well above the .* Pa by which the inertia of the aggregate"):
+            pulled = ratd.stretch(loose, strain_rate)
+        edge, strain = loose["box_length"].values[-1, 0], 0.005 * pulled.sizes["record"]
+        rate = -box_rate(strain_rate, loose.attrs["time_unit"])
+        uniform = inertial_tension(rate, edge, 1000.0 * pulled.attrs["phi_start"], strain)
+        # that of these monomers, which do not fill the box evenly
+        expected = uniform * 12.0 * np.var(place) / edge**2
+        assert float(pulled["tension"].mean()) == pytest.approx(expected, rel=0.15)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ratd.stretch(run, 3e-5)
 
 
 def test_a_dense_cluster_that_still_presses_on_its_box_is_pulled_until_it_parts():

@@ -12,7 +12,7 @@ from ratd.base.words import plural
 from ratd.experiments.collision.figures.snapshots import PANELS, origin_of, picture, positions
 from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
-from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several
+from ratd.experiments.command import OF_STARTS, Finite, aggregate, aggregate_options, answer, part_done, several
 from ratd.experiments.collision.stages import contact_of
 from ratd.experiments.saved import runs_in
 from ratd.laws.chosen import law_of
@@ -32,23 +32,19 @@ SNAPSHOTS = 5
 
 @click.command("collide")
 @aggregate_options
-@click.option("--velocity", required=True, type=click.FloatRange(0, 1e4, min_open=True), help="Of the collision [m/s].")
+@click.option("--velocity", required=True, type=Finite(0, 1e4, min_open=True), help="Of the collision [m/s].")
 @click.option(
     "--other",
     type=click.Path(path_type=Path, dir_okay=False),
     help="File with the other aggregate.  [default: the same]",
 )
 @click.option(
-    "--impact-parameter", default=0.0, show_default=True, type=click.FloatRange(0, 1, max_open=True),
-    help="In the sum of the radii of both.",
+    "--impact-parameter", default=0.0, show_default=True, type=Finite(0, 1, max_open=True),
+    help="In the sum of the radii of both, from the centre of mass to the farthest surface.",
 )  # fmt: skip
 @click.option("--law", default="dmt", show_default=True, type=click.Choice(["dmt", "jkr"]), help="Of the contacts.")
-@click.option(
-    "--duration", default=DURATION, show_default=True, type=click.FloatRange(0, 1e-3, min_open=True), help="[s]"
-)
-@click.option(
-    "--timestep", type=click.FloatRange(0, min_open=True), help="[s]  [default: by the smallest sphere and the law]"
-)
+@click.option("--duration", default=DURATION, show_default=True, type=Finite(0, 1e-3, min_open=True), help="[s]")
+@click.option("--timestep", type=Finite(0, min_open=True), help="[s]  [default: by the smallest sphere and the law]")
 def command(file, material, unit, starts, out, velocity, other, impact_parameter, law, duration, timestep):
     """Shoot an aggregate at itself, or at another one.
 

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 
 __all__ = [
@@ -64,10 +65,11 @@ def fragmentation(run):
     np.maximum.at(largest, label, run["radius"].values)
     order = np.argsort(-masses, kind="stable")
     first, second = (*masses[order], 0.0)[:2]
+    whole = masses[order].sum()  # of the pieces, so that nothing is missing by rounding where all is in two of them
     return xr.Dataset(
         {
-            "N_s": ((), fragmentation_number(first, second, mass.sum()), {"units": "1", "long_name": "N_s, Eq. 9"}),
-            "X": ((), agglomeration(first, second, mass.sum()), {"units": "1", "long_name": "X, Eq. 10"}),
+            "N_s": ((), fragmentation_number(first, second, whole), {"units": "1", "long_name": "N_s, Eq. 9"}),
+            "X": ((), agglomeration(first, second, whole), {"units": "1", "long_name": "X, Eq. 10"}),
             "piece_mass": ("piece", masses[order], {"units": "kg", "long_name": "mass of a piece"}),
             "piece_members": ("piece", members[order], {"units": "1", "long_name": "spheres of a piece"}),
             "piece_largest_radius": (
@@ -106,18 +108,19 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     Raises
     ------
     InputError
-        If a column is missing or there are no collisions.
+        If a column is missing or holds no numbers, there are no collisions, or another argument is wrong.
 
     Notes
     -----
     Mean X, over samples of the means of each, is interpolated linearly between the velocities. Where it falls through
     the limit more than once, the last time counts: from there on clusters come apart.
     """
-    for column in ("velocity", "X"):
-        if column not in table:
-            raise InputError(f"The table has no column {column!r}; it must have velocity and X.")
-    if not len(table):
-        raise InputError("The table has no collisions; it must have at least one row.")
+    table = _checked(table)
+    if not (is_whole(samples) and samples >= 1 and is_whole(seed) and seed >= 0 and is_number(limit)):
+        raise InputError(
+            f"limit, samples and seed are {limit!r}, {samples!r} and {seed!r}; they must be a number, a whole number "
+            "of at least 1 and one of at least 0."
+        )
     velocities, mean, _ = means(table, "X")
     middle = _crossing(velocities, mean, limit)
     rng = np.random.Generator(np.random.PCG64(seed))
@@ -209,6 +212,23 @@ def bootstrap_means(table, column, velocities, count, rng):
         wider = np.sqrt(n / (n - 1)) if n > 1 else 1.0
         row[:] = np.nanmean(values) + wider * (means_of_draws - np.nanmean(values))
     return drawn_means
+
+
+def _checked(table):
+    """The table of `fragmentation_velocity` with numbers in its columns."""
+    if not isinstance(table, pd.DataFrame):
+        raise InputError(f"The table is a {type(table).__name__}; it must be a pandas.DataFrame, one row a collision.")
+    table = table.copy()
+    for column in ("velocity", "X"):
+        if column not in table:
+            raise InputError(f"The table has no column {column!r}; it must have velocity and X.")
+        try:
+            table[column] = [float(value) for value in table[column]]
+        except (TypeError, ValueError) as error:
+            raise InputError(f"The column {column!r} of the table does not hold numbers alone.") from error
+    if not len(table):
+        raise InputError("The table has no collisions; it must have at least one row.")
+    return table
 
 
 def _crossing(velocity, mean, limit):

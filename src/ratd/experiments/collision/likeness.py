@@ -131,4 +131,5 @@ def likeness_table(table, samples=500):
                     for q, r in (("q", "radius"), ("q_low", "radius_low"), ("q_high", "radius_high"))
                 }
                 found.append(row)
-    return pd.DataFrame(found, columns=list(COLUMNS))
+    types = {name: float if units else object for name, (units, _) in COLUMNS.items()}
+    return pd.DataFrame(found, columns=list(COLUMNS)).astype(types)

@@ -323,8 +323,31 @@ class Plan:
 
     @property
     def figures(self):
-        """Names of the figures to draw, list of str."""
-        return [name for name, (_, source) in FIGURES.items() if source != "pictures" or self._picture(name)]
+        """Names of the figures to draw, list of str: those whose collisions some run has."""
+        return [name for name in FIGURES if self._can_draw(name)]
+
+    @property
+    def notes(self):
+        """What was left out because no run has such collisions, list of str."""
+        left_out = [name for name in FIGURES if name not in self.figures and FIGURES[name][1] != "pictures"]
+        if not left_out:
+            return []
+        own = self.config["figures"]
+        return [
+            f"config: left out is collision.figures.{', '.join(left_out)}: no run has the clusters mrn and twin, "
+            f"{own['mrn']!r} and {own['twin']!r}, under the law {own['law']!r}"
+        ]
+
+    def _can_draw(self, name):
+        """Whether all that a figure shows is computed."""
+        source = FIGURES[name][1]
+        if source == "pictures":
+            return self._picture(name) is not None
+        if source in ("thresholds", "likeness"):
+            return True
+        own = self.config["figures"]
+        shown = {"built": ("mrn",), "runs": ("mrn", "twin"), "table": ("mrn", "twin")}[source]
+        return all((own["law"], own[key]) in self.pairs() for key in shown)
 
     def _picture(self, name):
         """The collision that a figure or the page shows, None for none: the first, or the second for figure 4."""
@@ -356,7 +379,11 @@ class Plan:
             shown = self._picture(name)
             settings = {"rotation": shown["rotation"] if shown else None}
             return settings | ({"spacing": SPACING[name]} if name in SPACING else {})
-        return dict(self.config["figures"])
+        own = dict(self.config["figures"])
+        law = self.config["clusters"].get(own["mrn"], {})
+        if name == "figure1" and law.get("radii") == "mrn":
+            own["ends"] = [law["smallest_nm"] * NM, law["largest_nm"] * NM]
+        return own
 
     def snapshot_file(self, one):
         """File of a run with snapshots, named as in `snapshots.runs`."""

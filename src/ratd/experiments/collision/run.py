@@ -88,7 +88,8 @@ def collide(
     velocity : float
         Of one against the other [m/s].
     impact_parameter : float
-        0 for a central collision; in the sum of the radii of the two clusters, so that 1 would be a grazing one.
+        0 for a central collision; in the sum of the radii of the two clusters, from the centre of mass to the farthest
+        surface, so that 1 would be a grazing one.
     seed : int
         Of the rotations, at least 0.
     law : {"dmt", "jkr"} or part

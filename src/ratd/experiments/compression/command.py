@@ -8,7 +8,16 @@ import numpy as np
 
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import (
+    OF_STARTS,
+    Finite,
+    aggregate,
+    aggregate_options,
+    answer,
+    part_done,
+    several,
+    started,
+)
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row, runs
@@ -32,11 +41,11 @@ SMOOTH = 1.1
 @click.command("compress")
 @aggregate_options
 @click.option(
-    "--strain-rate", default=1e-5, show_default=True, type=click.FloatRange(0, FASTEST, min_open=True),
+    "--strain-rate", default=1e-5, show_default=True, type=Finite(0, FASTEST, min_open=True),
     help="C_v: the box shrinks with dL/dt = -2 C_v L/t_0. The smaller, the lower the phi from which it is static.",
 )  # fmt: skip
 @click.option(
-    "--until-phi", default=0.3, show_default=True, type=click.FloatRange(0, 0.6, min_open=True),
+    "--until-phi", default=0.3, show_default=True, type=Finite(0, 0.6, min_open=True),
     help="Filling factor at which to end.",
 )  # fmt: skip
 def command(file, material, unit, starts, out, strain_rate, until_phi):

@@ -35,6 +35,8 @@ CLUSTER = "<results>/clusters/{set}/seed_{seed}.nc"
 RUN = "<results>/compression/{set}/seed_{seed}.nc"
 TABLE = "<results>/compression/{set}.nc"
 SNAPSHOTS = "<results>/compression/snapshots.nc"
+SNAPSHOTS_NAME = "snapshots"
+"""A set of this name would have the same table as the snapshots of figure 3."""
 PRESSED = "<results>/pressed/{set}/phi_{phi}_seed_{seed}.nc"
 PULL = "<results>/tension/{pull}/phi_{phi}_seed_{seed}.nc"
 
@@ -107,6 +109,8 @@ def _check_further(plan):
 
 def _check_set(plan, name):
     """Raise InputError unless the clusters of a set can be grown."""
+    if name == SNAPSHOTS_NAME:
+        raise InputError(f"config: compression.sets has {name!r}; allowed: another name, this is that of a file")
     material = plan.of_set(name)["material"]
     if material not in plan.materials:
         allowed = ", ".join(plan.materials)

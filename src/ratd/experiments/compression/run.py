@@ -46,6 +46,8 @@ dissipated, with explicit steps; where long ones were taken, the part of these m
 LONG_BALANCE = {0.0: 0.2, 0.05: 0.05, 0.1: 0.02}
 EVENTS = 100
 """Contacts whose energy is taken in place of both where they are less."""
+REMEDY = "take a lower strain_rate, in Python also a smaller timestep_factor; there balance=False lets it run on"
+"""What to do where the balance of energy is off."""
 NOT_STATIC = 0.1
 """A run is warned of when it is static only from this filling factor on, or not at all."""
 
@@ -202,7 +204,7 @@ def compress(
     def tell(row, seconds_to_go):
         progress(row["phi_mean"], row["pressure"], seconds_to_go)
 
-    check = balance_check(BALANCE, LONG_BALANCE) if balance else None
+    check = balance_check(BALANCE, LONG_BALANCE, REMEDY) if balance else None
     how = {"snapshots": wanted, "check": check, "tell": tell if progress else None, "later": later}
     state, rows, kept = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
     run = strain_dataset(state, rows, parts)
@@ -310,13 +312,15 @@ def _static_from(cluster, box, until_phi):
     return static
 
 
-def balance_check(explicit, long):
+def balance_check(explicit, long, remedy="take a lower strain_rate, in Python also a smaller timestep_factor"):
     """A function of a record that raises RuntimeError where the balance of energy is off by too much.
 
     Parameters
     ----------
     explicit, long : dict of float to float
         Filling factor -> part of what moved that is allowed from there on, with explicit steps and with long ones.
+    remedy : str
+        What the user can do.
 
     Returns
     -------
@@ -340,8 +344,7 @@ def balance_check(explicit, long):
         if not abs(off) <= allowed[-1] * moved:
             raise RuntimeError(
                 f"at phi = {row['phi']:.3g} the balance of energy is off by {off:.3g} J; allowed are "
-                f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: take a lower "
-                "strain_rate, or a smaller timestep_factor; balance=False lets it run on"
+                f"{allowed[-1]:.1%} of the {moved:.3g} J that the box worked or friction took: {remedy}"
             )
 
     return check

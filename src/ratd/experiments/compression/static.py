@@ -11,6 +11,7 @@ __all__ = [
     "box_size",
     "face_speed",
     "filling_factor_bcca",
+    "inertial_tension",
     "slower_than_sound_from",
     "static_from",
     "time_unit",
@@ -97,6 +98,33 @@ def static_from(rate, n, monomer_radius, density, rolling_pressure):
     """
     size = box_size(n, monomer_radius, 1.0)
     return (density * (rate * size) ** 2 / (8.0 * INERTIAL_SHARE * rolling_pressure)) ** 0.375
+
+
+def inertial_tension(rate, size, density, strain):
+    """Tension [Pa] that an aggregate at rest shows when its box begins to grow, in a mean over the first ln L.
+
+    Parameters
+    ----------
+    rate : float
+        H [1/s], at which the box grows along an axis.
+    size : float
+        L [m], its edge there.
+    density : float
+        rho [kg m-3], the mean one in the box.
+    strain : float
+        ln L over which the mean is taken.
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    The box carries everything along with the speed H x. What is not held by its copies takes this motion back by its
+    own contacts, whatever they bear: their tension times its duration, strain/H, is sum m H x^2 over the volume, that
+    is rho H L^2/12. Derived here; a test pulls a cluster that does not hold to its copies.
+    """
+    return density * (rate * size) ** 2 / (12.0 * strain)
 
 
 def slower_than_sound_from(rate, n, monomer_radius, density, rolling_pressure, part=1.0):

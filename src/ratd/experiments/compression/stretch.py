@@ -1,5 +1,7 @@
 """Pull a compressed cluster until it comes apart, in a periodic box that grows."""
 
+import warnings
+
 import numpy as np
 import xarray as xr
 
@@ -20,7 +22,7 @@ from ratd.experiments.compression.run import (
     check_rate,
     compression_law,
 )
-from ratd.experiments.compression.static import box_rate
+from ratd.experiments.compression.static import box_rate, inertial_tension
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.evolve import touching_at_start
@@ -44,6 +46,8 @@ WINDOW = 4
 """Records over which the tension is averaged where its greatest value is looked for: 2 % in L."""
 BALANCE, LONG_BALANCE = 0.005, 0.05
 """Parts of what moved that the balance of energy may be off by, with explicit and with long steps."""
+INERTIAL_SHARE = 0.1
+"""Part of the strength that may be the inertia of what the growing box carries along."""
 UNLOADING_STRAIN = 2e-4
 """ln L between two records while a box lets go of what presses on it."""
 REST_STEPS = 200
@@ -171,12 +175,25 @@ def stretch(
     held = pull[best] > 0.0
     about = {"tensile_strength": pull[best] if held else 0.0}
     about["phi_strength"] = _smooth(found["phi_mean"].values)[best] if held else np.nan
+    _warn_of_inertia(about["tensile_strength"], rate, edges[0], rows[0, COLUMNS["phi"][0]] * material.density)
     about |= {"phi_start": rows[0, COLUMNS["phi"][0]], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
     names = ("material", *MATERIAL, "time_unit", "monomer_radius", "seed", "n_monomers")
     kept = {name: attrs[name] for name in names}
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
     )
+
+
+def _warn_of_inertia(strength, rate, edge, density):
+    """Warn where the greatest tension may be that of the start, which holds nothing together."""
+    inertia = inertial_tension(rate, edge, density, WINDOW * RECORD_STRAIN)
+    if strength > 0.0 and inertia > INERTIAL_SHARE * strength:
+        warnings.warn(
+            f"the tensile strength, {strength:.3g} Pa, is not well above the {inertia:.2g} Pa by which the inertia of "
+            "the aggregate resists a box that grows so fast: take a lower strain_rate; if it falls with the rate, the "
+            "aggregate does not hold to its copies",
+            stacklevel=3,
+        )
 
 
 def _has_state(run):

@@ -9,7 +9,16 @@ import numpy as np
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import (
+    OF_STARTS,
+    Finite,
+    aggregate,
+    aggregate_options,
+    answer,
+    part_done,
+    several,
+    started,
+)
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
@@ -26,11 +35,11 @@ __all__ = ["command", "show"]
 @click.command("stretch")
 @aggregate_options
 @click.option(
-    "--phi", default=0.1, show_default=True, type=click.FloatRange(0, 0.6, min_open=True),
+    "--phi", default=0.1, show_default=True, type=Finite(0, 0.6, min_open=True),
     help="Filling factor to which the aggregate is compressed first.",
 )  # fmt: skip
 @click.option(
-    "--strain-rate", default=1e-5, show_default=True, type=click.FloatRange(0, 1e-2, min_open=True),
+    "--strain-rate", default=1e-5, show_default=True, type=Finite(0, 1e-2, min_open=True),
     help="C_v: the box shrinks, then grows, with 2 C_v L/t_0.",
 )  # fmt: skip
 @click.option(

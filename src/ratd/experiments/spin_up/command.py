@@ -7,7 +7,16 @@ import click
 
 from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
-from ratd.experiments.command import OF_STARTS, aggregate, aggregate_options, answer, part_done, several, started
+from ratd.experiments.command import (
+    OF_STARTS,
+    Finite,
+    aggregate,
+    aggregate_options,
+    answer,
+    part_done,
+    several,
+    started,
+)
 from ratd.experiments.saved import runs_in
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
@@ -33,7 +42,7 @@ SNAPSHOTS = 10
 @aggregate_options
 @click.option(
     "--epsilon",
-    type=click.FloatRange(0, 1, min_open=True),
+    type=Finite(0, 1, min_open=True),
     help="Rise with this (d omega/dt)/omega² without waiting: faster, less accurate.  [default: wait while it moves]",
 )
 def command(file, material, unit, starts, out, epsilon):

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from ratd.base.checks import number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.geometry.shape import centre_of_mass, principal_axes
@@ -59,6 +60,8 @@ def cut_bound(grain, axis=None, *, directions=500):
     It is meant for the aggregate as it stands; contacts made while it deforms can raise it. A contact that is loaded at
     a slant holds more than F_C along the load: see `firm_bound`.
     """
+    if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
+        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
     if not isinstance(directions, (int, np.integer)) or directions < 1:
         raise InputError(f"directions is {directions!r}; it must be a whole number of at least 1.")
     u, v = _plane_of_rotation(grain, axis)
@@ -78,7 +81,7 @@ def _plane_of_rotation(grain, axis):
     if axis is None:
         _, axes = principal_axes(grain.position, grain.mass, grain.radius)
         return axes[1], axes[2]
-    axis = np.asarray(axis, dtype=np.float64)
+    axis = number_array(axis, "axis", "any unit")
     if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
         raise InputError(f"axis is {axis}; it must be three finite numbers that are not all 0.")
     axis = axis / np.max(np.abs(axis))

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ratd.base.checks import is_dust, is_number, is_whole, not_dust
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
 from ratd.base.statistics import equal_weights, weighted_line
@@ -136,8 +137,12 @@ def fit_ensemble(
     InputError
         If a column is missing, the table is empty or mixes drives, or an argument is out of range.
     """
-    if n_bootstrap < 1 or not 0 < confidence < 1:
-        raise InputError("fit_ensemble: n_bootstrap must be 1 or more, and confidence between 0 and 1")
+    if not (is_whole(n_bootstrap) and n_bootstrap >= 1 and is_number(confidence) and 0 < confidence < 1):
+        raise InputError(
+            "fit_ensemble: n_bootstrap must be a whole number of 1 or more, and confidence between 0 and 1"
+        )
+    if not (is_whole(seed) and seed >= 0):
+        raise InputError(f"fit_ensemble: seed is {seed!r}; it must be a whole number of at least 0")
     readings = _readings(mean_monomer_radius)
     table, drive = _fitted_rows(table, readings, mark)
     kinds = sort_cells(table[["material", "type"]].drop_duplicates())
@@ -189,6 +194,8 @@ _FIT_MEANING = {
 
 def _fitted_rows(table, readings, mark):
     """The table in an order of its own, with a column `usable`, and its drive."""
+    if not isinstance(table, pd.DataFrame | xr.Dataset):
+        raise InputError(f"fit_ensemble: the table is a {type(table).__name__}; it must be a table of grains")
     table = as_frame(table, "fit_ensemble", ("material", "type", "a_eff", "n_contacts", mark))
     if len(table) == 0:
         raise InputError("fit_ensemble: the table has no rows")
@@ -203,7 +210,17 @@ def _fitted_rows(table, readings, mark):
         needed.append("mean_monomer_radius")
     table = sort_cells(table)  # random draws must not depend on the order of the rows
     numbers = table[needed].astype(float)
+    for name in needed:
+        if name in ("a_eff", "mean_monomer_radius"):
+            _check_size(numbers[name].to_numpy(), f"the column {name!r}")
     return table.assign(usable=((numbers > 0) & np.isfinite(numbers)).all(axis=1)), _one_drive(table)
+
+
+def _check_size(radius, what):
+    """Raise InputError for radii [m] that no dust has, as those in nm."""
+    radius = radius[(radius > 0) & np.isfinite(radius)]
+    if radius.size and not is_dust(radius):
+        raise InputError(f"fit_ensemble: {what} is not in m, it seems: {not_dust(radius)}")
 
 
 def _abscissa(rows):
@@ -324,10 +341,11 @@ def _readings(mean_monomer_radius):
             if value != "own":
                 raise InputError(f"fit_ensemble: mean_monomer_radius is '{value}', allowed are a radius in m and 'own'")
             readings["own"] = "own"
-        elif value > 0:
+        elif is_number(value) and value > 0:
+            _check_size(np.array([value]), "mean_monomer_radius")
             readings[f"{value * 1e9:g} nm"] = float(value)
         else:
-            raise InputError(f"fit_ensemble: mean_monomer_radius is {value}, but must be above zero")
+            raise InputError(f"fit_ensemble: mean_monomer_radius is {value}, but must be above zero, in m")
     return readings
 
 

@@ -77,13 +77,19 @@ def how_to_turn(
     """
     if drive not in DRIVES:
         raise InputError(f"drive is {drive!r}; allowed are {', '.join(DRIVES)}.")
+    if not (integrator is None or hasattr(integrator, "set_step")):
+        raise InputError(f"integrator is {integrator!r}; it must be one of ratd.engine, or None.")
     explicit = leapfrog(timestep_factor=timestep_factor, damping=damping)
     paced = epsilon is not None or angular_acceleration is not None
-    if stretch is not None and (paced or drive == "literal"):
-        raise InputError(
-            "stretch is for a spin-up that waits until the grain is quiet; it is given beside "
-            f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not wait."
-        )
+    waits = drive != "literal" and not paced
+    usual = {"stretch": None, "pace": PACE, "unrest": UNREST, "drag": DRAG}
+    for name, value in {"stretch": stretch, "pace": pace, "unrest": unrest, "drag": drag}.items():
+        if value != usual[name] and not waits:
+            raise InputError(
+                f"{name} is for a spin-up that waits until the grain is quiet; it is given beside "
+                f"{'the drive literal' if drive == 'literal' else 'epsilon or angular_acceleration'}, which does not "
+                "wait."
+            )
     if drive == "torque" and paced:
         raise InputError(
             "drive is 'torque' and epsilon or angular_acceleration is given; the torque waits until the grain is "
@@ -94,7 +100,6 @@ def how_to_turn(
             "integrator is semi-implicit and the spin-up does not wait (drive literal, epsilon or "
             "angular_acceleration); that step is right only while the grain is quiet."
         )
-    waits = drive != "literal" and not paced
     if stretch is not None and integrator is not None and not isinstance(integrator, SemiImplicit):
         raise InputError(
             "stretch is given beside an integrator that is not semi-implicit; short steps stretch no contact by so "

@@ -28,6 +28,7 @@ the event took place in the interval before it, so the uncertainty from the reco
 import numpy as np
 import xarray as xr
 
+from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 
 MAJORITY = 0.5
@@ -114,7 +115,7 @@ def running_median(values, window=MEDIAN_WINDOW):
     InputError
         If `window` is not a positive odd number.
     """
-    if window < 1 or window % 2 == 0:
+    if not (is_whole(window) and window >= 1 and window % 2 == 1):
         raise InputError(f"running_median: the window is {window}, but must be a positive odd number of records")
     values = np.asarray(values, dtype=float)
     n = len(values)
@@ -163,7 +164,7 @@ def disruption(run, *, majority=MAJORITY, window=MEDIAN_WINDOW):
     Reissl et al. (2024), A&A 692, A60, Sect. 7.1, Fig. 4 and Eq. 32.
     """
     _check(run)
-    if not 0.0 < majority <= 1.0:
+    if not (is_number(majority) and 0.0 < majority <= 1.0):
         raise InputError(f"disruption: the majority is {majority!r}, but must be above 0 and at most 1")
     omega, mass, n_contacts, stress = (
         run[name].values.astype(float) for name in ("omega", "mass", "n_contacts", "total_stress")
@@ -286,6 +287,8 @@ def _peaks(mass_fraction, n_contacts, stress, initial_n_contacts, end, majority,
 
 def _check(run):
     """Raise InputError unless the run has all that the marks need."""
+    if not isinstance(run, xr.Dataset):
+        raise InputError(f"disruption: the run is a {type(run).__name__}; it must be what ratd.spin_up returned")
     for name in _NEEDED:
         if name not in run or run[name].dims != ("record",):
             raise InputError(f"disruption: the run has no variable '{name}' over the dimension 'record'")

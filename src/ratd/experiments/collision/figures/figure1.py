@@ -16,13 +16,15 @@ def density(radius, smallest=SMALLEST, largest=LARGEST):
 
 
 @styled
-def figure1(samples):
+def figure1(samples, smallest=SMALLEST, largest=LARGEST):
     """Density of the MRN law and of samples, in bins of equal width in the logarithm.
 
     Parameters
     ----------
     samples : list of (n,) array
         Radii [m].
+    smallest, largest : float
+        Ends of the law [m].
 
     Returns
     -------
@@ -30,14 +32,14 @@ def figure1(samples):
     """
     figure = new_figure(ONE_COLUMN, 0.8 * ONE_COLUMN, f"MRN law and samples of {len(samples[0])} spheres")
     axes = figure.subplots()
-    r = np.geomspace(SMALLEST, LARGEST, 200)
-    axes.plot(r * 1e6, density(r) * 1e-6, color="black", label="MRN law")
-    edges = np.geomspace(SMALLEST, LARGEST, BINS + 1)
+    r = np.geomspace(smallest, largest, 200)
+    axes.plot(r * 1e6, density(r, smallest, largest) * 1e-6, color="black", label="MRN law")
+    edges = np.geomspace(smallest, largest, BINS + 1)
     middle = np.sqrt(edges[1:] * edges[:-1])
     for k, radii in enumerate(samples):
         counts = np.histogram(radii, edges)[0]
         # of a sample whose smallest spheres were left out the others keep their density
-        number = len(radii) / part_above(radii.min())
+        number = len(radii) / part_above(radii.min(), smallest, largest)
         part = counts / number / np.diff(edges) * 1e-6
         there = counts > 0
         colour = ("#D55E00", "#009E73", "#0072B2", "#CC79A7")[k % 4]
@@ -52,4 +54,4 @@ def figure1(samples):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from the cluster of its settings as built."""
-    return figure1(radii_of(files))
+    return figure1(radii_of(files), *settings.get("ends", (SMALLEST, LARGEST)))

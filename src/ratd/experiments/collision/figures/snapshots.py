@@ -76,7 +76,8 @@ def picture(row, spacing):
     """
     time, place, piece = positions(row)
     radius = row["radius"].values
-    wanted = [int(np.argmin(np.abs(time - spacing * k))) for k in range(PANELS)]
+    # of few snapshots each once
+    wanted = list(dict.fromkeys(int(np.argmin(np.abs(time - spacing * k))) for k in range(PANELS)))
     what = cluster_text(row["cluster"].item()), law_text(row["law"].item())
     title = f"{what[0]} at {row['velocity'].item():g} m s$^{{-1}}$, {what[1]}, rotation {row['seed'].item()}"
     figure = new_figure(TWO_COLUMNS, 0.62 * TWO_COLUMNS, title)
@@ -85,7 +86,9 @@ def picture(row, spacing):
     # nearly all spheres of all pictures: what flies off fast is not waited for
     reach = np.max(np.abs(place[wanted] @ CAMERA.T)[..., :2] + radius[:, None], axis=-1)
     half_width = 1.06 * max(np.quantile(one, PART_SHOWN) for one in (reach[0], *reach))
-    for axes, k in zip(panels.ravel(), wanted, strict=True):
+    for axes in panels.ravel()[len(wanted) :]:
+        axes.set_axis_off()
+    for axes, k in zip(panels.ravel(), wanted, strict=False):
         at = place[k] @ CAMERA.T
         view = render(at, radius, colours, half_width, PIXELS)
         edge = half_width * 1e6

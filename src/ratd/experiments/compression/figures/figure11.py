@@ -3,7 +3,10 @@
 import numpy as np
 
 from ratd.experiments.compression.figures.common import COLOURS, DASHES, read_sets, seeds_text
-from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, new_figure, styled
+from ratd.pictures.style import GREY, ONE_COLUMN, empty, logarithmic, new_figure, styled
+
+NEAR = 0.03
+"""ln phi by which a snapshot may lie beside the filling factor that is shown."""
 
 
 @styled
@@ -12,13 +15,17 @@ def figure11(table, wanted=(0.003, 0.01, 0.03, 0.1)):
     figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{table.attrs['material']}, {seeds_text(table)}")
     axes = figure.subplots()
     distance, found = table["distance"].values, table["snapshot_phi"].values
-    for k, phi in enumerate(wanted):
-        at = int(np.argmin(np.abs(np.log(found / phi))))
+    kept = [(phi, int(np.argmin(np.abs(np.log(found / phi))))) for phi in wanted] if len(found) else []
+    # a run that begins denser has no snapshot there
+    kept = [(phi, at) for phi, at in kept if abs(np.log(found[at] / phi)) < NEAR]
+    if not kept:
+        empty(axes, "no snapshot at these filling factors")
+    for k, (phi, at) in enumerate(kept):
         numbers = table["number_within"].values[:, at]
         numbers = numbers[np.isfinite(numbers[:, 0])].mean(axis=0)
         label = rf"$\phi$ = {phi:g}"
         axes.plot(distance, numbers, color=COLOURS[k], ls=DASHES[k], label=label)
-        uniform = "thin: uniform density" if k == len(wanted) - 1 else None
+        uniform = "thin: uniform density" if k == len(kept) - 1 else None
         axes.plot(distance, found[at] * distance**3, color=COLOURS[k], lw=0.5, label=uniform)
     axes.plot(distance, 0.75 * distance**2, color=GREY, lw=0.8, label=r"$\propto r^2$")
     n = table["n_monomers"].item()

@@ -15,7 +15,8 @@ def isotropy(tables):
     for k, table in enumerate(tables):
         label = f"{table.attrs['material']}, N = {table['n_monomers'].item()}, {runs_text(table)}"
         mean, error = mean_pressure(table)
-        known = np.where(mean > 3.0 * error, anisotropy(table), np.nan)
+        # of a single run nothing says how sure it is
+        known = np.where(mean > 3.0 * np.nan_to_num(error), anisotropy(table), np.nan)
         axes.plot(table["phi"], known, color=COLOURS[k % 5], ls=DASHES[k % 5], label=label)
     axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylabel="standard deviation / $P$", ylim=(0.02, 2))
     axes.set_xlim(0.01, 0.5)

@@ -85,7 +85,7 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
         logarithmic(axes.yaxis)
     if len(cells):
         panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
-    _legend(figure, style, len(grown), wide)
+    _legend(figure, style, len(grown), wide, bool(np.isfinite(fit["A"]).any()))
     return figure
 
 
@@ -134,10 +134,11 @@ def _line(cell, material, radius, A, alpha):
     return eq33(cell["a_eff"], material.surface_energy, material.density, radius, contacts, 1.0, A, alpha)
 
 
-def _legend(figure, style, n_grown, wide):
-    """One legend for all panels: types, then kinds of line."""
+def _legend(figure, style, n_grown, wide, fitted):
+    """One legend for all panels: types, then kinds of line, that of the fit where there is one."""
     handles = [Line2D([], [], ls="none", label=kind, **look) for kind, look in style.items()]
-    handles.append(Line2D([], [], color="black", label="fit of Eq. 33", **FIT))
+    if fitted:
+        handles.append(Line2D([], [], color="black", label="fit of Eq. 33", **FIT))
     text = f"Eq. 33 with Table 3 as printed, {plural(n_grown, 'grown grain')}"
     handles.append(Line2D([], [], color="black", label=text, **PRINTED))
     figure.legend(handles=handles, handlelength=2.5, loc="outside lower center", ncols=5 if wide else 1)
