@@ -1,5 +1,6 @@
 import math
 
+import pandas as pd
 import pytest
 
 from ratd.base.errors import InputError
@@ -153,6 +154,7 @@ def test_mix_takes_every_property_of_another_table():
     assert mixed.youngs_modulus == pytest.approx(25e9)
     assert mixed.critical_rolling_displacement == pytest.approx(1.75e-10)
     assert mixed.viscous_time == pytest.approx(4.75e-12)
+    assert mix("z", pd.Series({"x": 0.25, "y": 0.75}), table) == mixed
 
 
 @pytest.mark.parametrize(
@@ -163,6 +165,8 @@ def test_mix_takes_every_property_of_another_table():
         ({"forsterite": math.nan}, "at least 0"),
         ({}, "at least 0"),
         ({"cheese": 1.0}, "cheese"),
+        ({"forsterite": "1"}, "at least 0"),
+        (None, "must be a dict"),
     ],
 )
 def test_wrong_mixtures_are_refused(fractions, message):

@@ -32,6 +32,16 @@ def test_mass_counts_not_the_number_of_spheres():
     np.testing.assert_allclose(found["piece_largest_radius"], [2e-6, 1e-6])
 
 
+def test_two_pieces_of_odd_masses_are_all_there_is():
+    """No rounding makes N_s negative or X exceed 1."""
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        radius = rng.uniform(1e-7, 1e-6, 40)
+        one = fragmentation(made_up(np.zeros(40, int), radius, np.zeros(40, int)))
+        two = fragmentation(made_up(np.arange(40) % 2, radius, np.zeros(40, int)))
+        assert (float(one["N_s"]), float(one["X"]), float(two["N_s"])) == (0.0, 1.0, 0.0)
+
+
 def test_one_piece_has_no_second():
     found = fragmentation(made_up([0, 0], [1e-6, 1e-6], [0, 1]))
     assert float(found["X"]) == 1.0 and float(found["N_s"]) == 0.0
@@ -67,11 +77,24 @@ def test_the_last_fall_counts_and_none_gives_nan():
 
 @pytest.mark.parametrize(
     ("rows", "words"),
-    [(pd.DataFrame({"velocity": [1.0]}), "no column 'X'"), (pd.DataFrame({"velocity": [], "X": []}), "no collisions")],
+    [
+        (pd.DataFrame({"velocity": [1.0]}), "no column 'X'"),
+        (pd.DataFrame({"velocity": [], "X": []}), "no collisions"),
+        (pd.DataFrame({"velocity": [1.0], "X": ["all"]}), "'X' of the table does not hold numbers alone"),
+        (None, "The table is a NoneType; it must be a pandas.DataFrame"),
+    ],
 )
 def test_bad_tables_are_refused(rows, words):
     with pytest.raises(InputError, match=words):
         fragmentation_velocity(rows)
+
+
+def test_columns_of_datasets_are_numbers():
+    falls = table([1, 2], lambda v: 2.0 - v)
+    odd = pd.DataFrame({"velocity": falls["velocity"], "X": [xr.DataArray(value) for value in falls["X"]]})
+    assert fragmentation_velocity(odd).equals(fragmentation_velocity(falls))
+    with pytest.raises(InputError, match="limit, samples and seed are 0.15, 0 and 0"):
+        fragmentation_velocity(falls, samples=0)
 
 
 def test_a_velocity_without_a_value_is_passed_over():

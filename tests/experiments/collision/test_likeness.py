@@ -70,3 +70,13 @@ def test_table():
     assert found["quantity"].tolist() == ["X", "N_s", "energy_half"] and (found["cluster"] == "mrn").all()
     np.testing.assert_allclose(found["radius"], 0.42e-6, rtol=0.05)
     assert found["q"].iloc[0] == pytest.approx(moment_of_length(found["radius"].iloc[0]))
+
+
+def test_without_unequal_spheres_the_table_has_no_rows_and_its_types():
+    rng = np.random.default_rng(5)
+    own = rows(curve(RADII[0]), rng).assign(
+        law="velocity", cluster="a", impact_parameter=0.0, second_contact=0.5, largest_radius=RADII[0],
+        mean_sphere_radius=RADII[0], N_s=0.0, energy_half=0.0,
+    )  # fmt: skip
+    found = likeness_table(own, samples=20)
+    assert len(found) == 0 and found["velocities"].dtype == found["radius"].dtype == float

@@ -46,6 +46,20 @@ def plan(*entries, **own):
     return check(config(runs=list(entries), snapshots=NO_PICTURES, **own), SCHEMAS)
 
 
+def test_figures_without_their_clusters_are_left_out_and_said():
+    own = plan(entry())
+    assert own.figures == ["scaling"] and not any("mrn" in path for path in own.clusters_files())
+    (note,) = own.notes
+    assert "left out is collision.figures.figure1, figure2, figure5" in note and "'mrn'" in note
+    assert check(config(), SCHEMAS).notes == []
+    with pytest.raises(InputError, match="cluster_radius_um is 4e-06; allowed: a number from 0.001 to 1000"):
+        plan(entry(), cluster_radius_um=4e-6)
+
+
+def test_the_law_of_figure_1_has_the_ends_of_its_cluster():
+    assert check(config(), SCHEMAS).figure("figure1")["ends"] == pytest.approx([50e-9, 2.5e-6])
+
+
 def test_the_paper():
     """Seven kinds of clusters, ten velocities, ten rotations, 3 us; MRN at 1 ps."""
     paper = check(config(), SCHEMAS)

@@ -96,6 +96,13 @@ def test_the_steps_go_from_the_config_to_the_run():
         ),
         ({"sets": {"base": {"material": "x"}}}, "compression.sets.base.material is 'x'; allowed: a-C"),
         ({"sets": {"base": {"material": "q-S"}}}, "compression.sets.base.radius_nm is null; allowed: a number"),
+        (
+            {"sets": {"base": {"radius_nm": 1e-7}}},
+            "compression.sets.base.radius_nm is 1e-07; allowed: a number from 0.1",
+        ),
+        ({"sets": {"snapshots": {}}}, "compression.sets has 'snapshots'; allowed: another name"),
+        ({"sets": {"..": {}}}, "letters, digits and _ . -"),
+        ({"figures": {"figure3": {"phi": []}}}, "figure3.phi is []; allowed: a list of filling factors between 0 and"),
         ({"sets": {"base": {"until_phi": 0.9}}}, "until_phi is 0.9; allowed: a filling factor between 0 and 0.64"),
         (
             {"sets": {"base": {"radii": {"law": "lognormal", "smallest_nm": 25, "largest_nm": 300}}}},

@@ -67,7 +67,11 @@ def check(config, schemas="config/schema"):
     """
     shared, own, materials = configs.section(config, "compression", schemas)
     plan = Plan(own, materials, shared["results"])
-    configs.together(*(partial(_check_names, plan, name) for name in plan.figures), partial(_check_further, plan))
+    configs.together(
+        *(partial(_check_names, plan, name) for name in plan.figures),
+        partial(_check_further, plan),
+        partial(_check_names_of_sets, plan),
+    )
     configs.together(*(partial(_check_set, plan, name) for name in plan.sets))
     if "figure3" in plan.figures:
         _check_figure3(plan)
@@ -107,10 +111,14 @@ def _check_further(plan):
             )
 
 
+def _check_names_of_sets(plan):
+    """Raise InputError where the table of a set would have the name of another file."""
+    if SNAPSHOTS_NAME in plan.config["sets"]:
+        raise InputError(f"config: compression.sets has {SNAPSHOTS_NAME!r}; allowed: another name, which no file has")
+
+
 def _check_set(plan, name):
     """Raise InputError unless the clusters of a set can be grown."""
-    if name == SNAPSHOTS_NAME:
-        raise InputError(f"config: compression.sets has {name!r}; allowed: another name, this is that of a file")
     material = plan.of_set(name)["material"]
     if material not in plan.materials:
         allowed = ", ".join(plan.materials)
