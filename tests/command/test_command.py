@@ -241,6 +241,9 @@ def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
     done = run("show", chain, "--material", "q-S")
     assert done.exit_code == 0 and "4 monomers, 3 contacts, radii 20" in done.stdout
     assert chain.with_suffix(".png").read_bytes()[1:4] == b"PNG"
+    odd = chain.with_name("a$\\q$b.xyz")
+    odd.write_bytes(chain.read_bytes())
+    assert run("show", odd).exit_code == 0
     grains_file(chain.with_name("grains.nc"))
     done = run("show", chain.with_name("grains.nc"))
     assert done.exit_code == 0 and "seed 2: 5 monomers, 4 contacts, porosity" in done.stdout

@@ -286,3 +286,9 @@ def test_a_run_of_days_is_warned_of_once(monkeypatch):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         evolve(**GOOD)
+
+
+def test_spheres_that_may_pass_through_each_other_are_warned_of():
+    fast = {"position": [[0, 0, 0], [42e-9, 0, 0]], "radius": [20e-9] * 2, "velocity": [[5.0, 0, 0], [-5.0, 0, 0]]}
+    with pytest.warns(UserWarning, match="meet at 10 m/s come nearer by 1e-07 m in a step of 1e-08 s"):
+        evolve(**fast, duration=2e-8, timestep=1e-8)

@@ -17,7 +17,7 @@ from ratd.geometry.shape import Shape, centre_of_mass
 from ratd.pictures.snapshots import OTHERS
 from ratd.pictures.spheres import render, view_axes
 from ratd.pictures.spheres import show as draw
-from ratd.pictures.style import ONE_COLUMN, new_figure, save, styled
+from ratd.pictures.style import ONE_COLUMN, new_figure, plain, save, styled
 
 __all__ = ["command", "show"]
 
@@ -35,7 +35,7 @@ def command(file, unit, material, out):
     if file.suffix != ".nc":
         particles = read_particles(file, unit=unit)
         contacts = "" if material is None else f", {particles.grain(material).n_contacts} contacts"
-        lines = _picture(particles.position, particles.radius, file.name, out, contacts)
+        lines = _picture(particles.position, particles.radius, plain(file.name), out, contacts)
     else:
         if unit is not None or material is not None:
             raise InputError(

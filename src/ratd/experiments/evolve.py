@@ -184,7 +184,20 @@ def evolve(
             foresee = _warn_of_long(_to_go(to_tell, begun, state, duration), duration, state.scalar[DT])
         if progress is not None and to_tell.passed():
             progress(state.scalar[TIME] / duration, _to_go(to_tell, begun, state, duration), rows[-1])
+    _warn_of_passing(velocity, radius, state.scalar[DT])
     return _dataset(state, rows, pictures, law, box)
+
+
+def _warn_of_passing(velocity, radius, timestep):
+    """Warn of spheres so fast that they may pass through each other between two steps."""
+    fastest = 0.0 if velocity is None else float(np.linalg.norm(np.ptp(velocity, axis=0)))
+    if fastest * timestep > radius.min():
+        warnings.warn(
+            f"two spheres that meet at {fastest:.3g} m/s come nearer by {fastest * timestep:.2g} m in a step of "
+            f"{timestep:.2g} s, more than the smallest radius: they may have passed through each other; take a smaller "
+            "timestep",
+            stacklevel=3,
+        )
 
 
 def _to_go(since, begun, state, duration):

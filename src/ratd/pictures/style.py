@@ -106,6 +106,11 @@ def new_figure(width, height, title):
     return figure
 
 
+def plain(name):
+    """The name of a file or of a user as text of a figure, in which a $ begins no formula."""
+    return str(name).replace("$", r"\$")
+
+
 @styled
 def save(figure, *paths):
     """Write a figure to each path, in the format of its suffix, the same bytes each time.

@@ -277,6 +277,11 @@ def snapshots(files, settings, say):
     kept = run["snapshot_phi"].values
     nearest = {phi: int(np.argmin(np.abs(np.log(kept / phi)))) for phi in settings["phi"]}
     wanted = [at for phi, at in nearest.items() if abs(np.log(kept[at] / phi)) < 2.0 * np.log(RECORD_STEP)]
+    if not wanted:
+        raise InputError(
+            f"figure 3: the run has no snapshot at phi = {', '.join(f'{phi:g}' for phi in settings['phi'])}; it goes "
+            f"from {run.attrs['phi_start']:.3g} to {run['phi'].values[-1]:.3g}: name other ones in figures.figure3.phi"
+        )
     length = run["snapshot_box_length"].values[wanted]
     position = run["snapshot_position"].values[wanted]
     wrapped = position - length[:, None, None] * np.round(position / length[:, None, None])

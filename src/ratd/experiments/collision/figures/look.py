@@ -6,7 +6,7 @@ from matplotlib import colormaps
 from ratd.experiments.collision.fragmentation import means
 from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.printed import RADII
-from ratd.pictures.style import GREY
+from ratd.pictures.style import GREY, plain
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
 
@@ -74,7 +74,7 @@ def radius_label(radius):
 
 def cluster_text(name):
     """Text for a cluster of the config."""
-    return CLUSTERS.get(name, str(name).replace("_", " "))
+    return CLUSTERS.get(name, plain(name).replace("_", " "))
 
 
 def law_text(name):
