@@ -138,9 +138,7 @@ def fit_ensemble(
         If a column is missing, the table is empty or mixes drives, or an argument is out of range.
     """
     if not (is_whole(n_bootstrap) and n_bootstrap >= 1 and is_number(confidence) and 0 < confidence < 1):
-        raise InputError(
-            "fit_ensemble: n_bootstrap must be a whole number of 1 or more, and confidence between 0 and 1"
-        )
+        raise InputError("fit_ensemble: n_bootstrap must be 1 or more, a whole number, and confidence between 0 and 1")
     if not (is_whole(seed) and seed >= 0):
         raise InputError(f"fit_ensemble: seed is {seed!r}; it must be a whole number of at least 0")
     readings = _readings(mean_monomer_radius)

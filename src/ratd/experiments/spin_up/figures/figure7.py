@@ -85,7 +85,7 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
         logarithmic(axes.yaxis)
     if len(cells):
         panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
-    _legend(figure, style, len(grown), wide, bool(np.isfinite(fit["A"]).any()))
+    _legend(figure, style, len(grown), wide, fit is not None and bool(np.isfinite(fit["A"]).any()))
     return figure
 
 
