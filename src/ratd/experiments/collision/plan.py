@@ -343,10 +343,10 @@ class Plan:
         source = FIGURES[name][1]
         if source == "pictures":
             return self._picture(name) is not None
-        if source in ("thresholds", "likeness"):
+        if source == "thresholds":
             return True
         own = self.config["figures"]
-        shown = {"built": ("mrn",), "runs": ("mrn", "twin"), "table": ("mrn", "twin")}[source]
+        shown = ("mrn",) if source == "built" else ("mrn", "twin")
         return all((own["law"], own[key]) in self.pairs() for key in shown)
 
     def _picture(self, name):
