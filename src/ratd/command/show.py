@@ -47,20 +47,20 @@ def command(file, unit, material, out):
 
 def _of_results(path, out):
     """Pictures and lines of a file of results."""
-    home = import_module(_home(path))
-    if kind_in(path)[1]:
-        return home.show(path, out)
+    kind, by_ratd = kind_in(path)
+    home = import_module(_home(path, kind))
     try:
         return home.show(path, out)
     except (InputError, KeyError) as error:
+        if by_ratd:
+            raise
         raise InputError(f"{path}: is not the whole of a run, as ratd returned it ({error})") from error
 
 
-def _home(path):
-    """Module that shows files of the kind of a file."""
+def _home(path, kind):
+    """Module that shows files of a kind."""
     from ratd.command import SHOWN
 
-    kind, _ = kind_in(path)
     if kind not in SHOWN:
         what = "holds none of these" if kind is None else f"is a file of {kind}"
         raise InputError(
