@@ -55,6 +55,14 @@ NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
         ({"contacts": [0, 1]}, "contacts must be pairs"),
         ({"contacts": [[0.0, 1.0]]}, "contacts must be pairs"),
         ({"contacts": [[0, 1], [1, 0]]}, "contacts names the pair 0, 1 more than once"),
+        (
+            {"contacts": [[0, 1]], "position": PAIR * 1.2},
+            "the pair 0, 1, but they are apart by 0.4 of the smaller radius; .* numbered from 0 in the order of pos",
+        ),
+        (
+            {"contacts": [[1, 0]], "position": [[0.0, 0, 0], [9e-8, 0, 0]], "box": periodic(1.5e-7)},
+            r"apart by 1 of the smaller radius; .* through the wall of the box needs its image too, \(k, 5\)",
+        ),
         ({"position": PAIR * 0.0}, "spheres 0 and 1 overlap by 2 of the smaller radius; at most 0.5 is allowed"),
         ({"position": PAIR * 0.7}, "spheres 0 and 1 overlap by 0.6 of"),
         (

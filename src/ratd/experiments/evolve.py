@@ -29,6 +29,8 @@ AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
 DEEPEST = 0.5
 """Two spheres may overlap at the start by at most this part of the smaller radius."""
+FARTHEST = 0.1
+"""Spheres whose contact is given may be apart by at most this part of the smaller radius: no contact reaches so far."""
 
 # name -> dimensions after `record`, units, meaning
 RECORDS = {
@@ -124,7 +126,8 @@ def evolve(
     Raises
     ------
     InputError
-        If an argument is not usable, or two spheres overlap at the start by more than half of the smaller radius.
+        If an argument is not usable, or two spheres overlap at the start by more than half of the smaller radius, or
+        a contact is given of two that are apart.
     RuntimeError
         If the integration fails, or leaves the balance of energy.
     """
@@ -145,8 +148,10 @@ def evolve(
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
     if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
-    contacts = None if contacts is None else _contacts(contacts, len(radius))
     touching = touching_at_start(position, radius, box)
+    if contacts is not None:
+        contacts = _contacts(contacts, len(radius))
+        _check_reach(contacts, position, radius, box)
     drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
@@ -263,6 +268,26 @@ def _contacts(contacts, n):
     return pairs.astype(np.int64)
 
 
+def _check_reach(contacts, position, radius, box):
+    """Refuse contacts of spheres that are too far apart to hold each other."""
+    gap = -_depth(contacts, position, radius, box)
+    if len(contacts) and gap.max() > FARTHEST:
+        i, j = contacts[gap.argmax(), :2]
+        image = " A contact through the wall of the box needs its image too, (k, 5)." if has_images(box) else ""
+        raise InputError(
+            f"contacts names the pair {i}, {j}, but they are apart by {gap.max():.2g} of the smaller radius; a contact "
+            f"is of two that touch, numbered from 0 in the order of position.{image}"
+        )
+
+
+def _depth(pairs, position, radius, box):
+    """By how much the spheres of pairs overlap, over the smaller radius of each, (k,); below 0 where they are apart."""
+    i, j = pairs[:, :2].T
+    image = pairs[:, 2:] if pairs.shape[1] == 5 else np.zeros((len(pairs), 3))
+    apart = np.linalg.norm(position[i] - position[j] + image * np.array(box.edges(np.zeros(1))), axis=1)
+    return (radius[i] + radius[j] - apart) / np.minimum(radius[i], radius[j])
+
+
 def touching_at_start(position, radius, box):
     """Pairs that overlap at the start, with images, (k, 5), of which none may do so too deeply."""
     edges = np.array(box.edges(np.zeros(1)))
@@ -273,14 +298,13 @@ def touching_at_start(position, radius, box):
             f"least {least:.3g} m."
         )
     pairs = touching_pairs(position, radius, box)
-    i, j = pairs[:, :2].T
-    apart = np.linalg.norm(position[i] - position[j] + pairs[:, 2:] * edges, axis=1)
-    depth = (radius[i] + radius[j] - apart) / np.minimum(radius[i], radius[j])
+    depth = _depth(pairs, position, radius, box)
     if len(pairs) and depth.max() > DEEPEST:
         worst = depth.argmax()
+        i, j = pairs[worst, :2]
         a_copy = " of a neighbouring box" if pairs[worst, 2:].any() else ""
         raise InputError(
-            f"The spheres {i[worst]} and {j[worst]}{a_copy} overlap by {depth[worst]:.2g} of the smaller radius; "
+            f"The spheres {i} and {j}{a_copy} overlap by {depth[worst]:.2g} of the smaller radius; "
             f"at most {DEEPEST:g} is allowed."
         )
     return pairs
