@@ -47,7 +47,10 @@ def test_a_sample_is_near_to_the_law():
         ({"n": 2.5}, "n is 2.5"),
         ({"seed": -1}, "seed is -1"),
         ({"smallest": 3e-6}, "smallest and largest are 3e-06 and 2.5e-06"),
+        ({"largest": "2.5 um"}, "smallest and largest are 5e-08 and '2.5 um'; they must be numbers above 0, in m"),
+        ({"smallest": 50, "largest": 2500}, "lengths are in m, .* multiply those in nm by 1e-09"),
         ({"mass_within": 0.0}, "mass_within is 0.0; it must be a number above 0, or None"),
+        ({"length_within": "5 %"}, "length_within is '5 %'"),
         # a single one of so few would need all the mass
         ({"n": 20, "length_within": 1e-9}, "None of 500 samples of 20 radii .* is near enough to the law"),
     ],

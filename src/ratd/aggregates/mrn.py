@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.radii import mrn_moment, mrn_radii
+from ratd.base.checks import check_radii, is_number, is_whole
 from ratd.base.errors import InputError
 
 __all__ = [
@@ -57,16 +58,17 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
     by 37 %, its L_5 by a quarter, so that one free sample says little about the law. Fewer than about 1000 spheres
     cannot have the L_5 of the law: a single one would need all the mass.
     """
-    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 2:
+    if not is_whole(n) or n < 2:
         raise InputError(f"n is {n!r}; it must be a whole number of at least 2.")
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+    if not is_whole(seed) or seed < 0:
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
-    if not (np.isfinite([smallest, largest]).all() and 0.0 < smallest < largest):
+    if not (is_number(smallest) and is_number(largest) and 0.0 < smallest < largest):
         raise InputError(
-            f"smallest and largest are {smallest!r} and {largest!r}; they must be above 0, smallest first."
+            f"smallest and largest are {smallest!r} and {largest!r}; they must be numbers above 0, in m, smallest first."
         )
+    check_radii(np.array([smallest, largest]))
     for name, value in (("mass_within", mass_within), ("length_within", length_within)):
-        if value is not None and not value > 0.0:
+        if value is not None and not (is_number(value) and value > 0.0):
             raise InputError(f"{name} is {value!r}; it must be a number above 0, or None.")
     rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence([int(n), int(seed)])))
     cube = mrn_moment(3.0, smallest, largest)
