@@ -64,7 +64,7 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
     if not (is_number(smallest) and is_number(largest) and 0.0 < smallest < largest):
         raise InputError(
-            f"smallest and largest are {smallest!r} and {largest!r}; they must be numbers above 0, in m, smallest first."
+            f"smallest and largest are {smallest!r} and {largest!r}; they must be numbers above 0, in m, in order."
         )
     check_radii(np.array([smallest, largest]))
     for name, value in (("mass_within", mass_within), ("length_within", length_within)):

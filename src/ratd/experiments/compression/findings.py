@@ -46,6 +46,7 @@ from ratd.experiments.compression.strength import (
     share_at,
     slope_of_structure,
 )
+from ratd.experiments.compression.tables import nearest_phi
 from ratd.experiments.compression.tension_findings import of_tension
 
 __all__ = ["findings"]
@@ -328,7 +329,7 @@ def _near(table, phi):
 
 def _bin_at(table, phi):
     """Number of the bin of a filling factor in a table."""
-    return int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
+    return nearest_phi(table["phi"].values, phi)
 
 
 def verdicts(values, sets):

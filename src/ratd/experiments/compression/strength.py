@@ -9,7 +9,7 @@ from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.measured import Measured
 from ratd.base.statistics import jackknife_error
-from ratd.experiments.compression.tables import BIN, bins, in_bins
+from ratd.experiments.compression.tables import BIN, bins, in_bins, nearest_phi
 from ratd.observables.energy import DISSIPATED
 
 __all__ = [
@@ -256,7 +256,7 @@ def rates(table, ways, own=slice(None)):
 
 def share_at(table, way, phi):
     """Part of all the energy lost up to phi that went one way, `Fit` of one number."""
-    k = int(np.argmin(np.abs(np.log(table["phi"].values / phi))))
+    k = nearest_phi(table["phi"].values, phi)
     lost = np.stack([table[f"dissipated_{name}"].values[:, k] for name in DISSIPATED], axis=1)
     return of_means(lost[np.isfinite(lost).all(axis=1)], lambda mean: mean[DISSIPATED.index(way)] / mean.sum())
 

@@ -10,7 +10,6 @@ from ratd.base.errors import InputError
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
 from ratd.experiments.compression.grow import grown
-from ratd.experiments.compression.run import RECORD_STEP
 from ratd.experiments.compression.strain import LABELS
 from ratd.laws.contact_constants import reduced_radius, rolling_energy
 from ratd.observables.energy import DISSIPATED, STORED
@@ -19,15 +18,26 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
 
-__all__ = ["BIN", "DISTANCES", "bins", "in_bins", "joined", "run_set", "set_of", "snapshots"]
+__all__ = [
+    "BIN",
+    "DISTANCES",
+    "bins",
+    "in_bins",
+    "joined",
+    "nearest_phi",
+    "run_set",
+    "set_of",
+    "snapshots",
+    "snapshots_at",
+]
 
 BIN = 1.04
 """Ratio of the ends of a bin of the filling factor."""
 DISTANCES = np.round(2.0 * 1.12 ** np.arange(44), 3)
 """Distances r/r_0 at which N(<r) is tabulated, from 2 to 262."""
+NEAR = 0.03
+"""ln phi by which a snapshot may lie beside the filling factor that is asked for."""
 OF_RUN = ("phi_start", "static_from", "radius_of_gyration", "rolling_pressure", "strain_rate", "timestep")
-
-
 GYRATION_SEEDS = 60
 """Clusters that are grown for the mean radius of gyration, which takes far less time than a run."""
 
@@ -185,7 +195,7 @@ def _add_structure(table, found):
     numbers = np.full((len(found), len(most), len(DISTANCES)), np.nan)
     for k, run in enumerate(found):
         for at, phi in enumerate(rounded[k]):
-            place = int(np.argmin(np.abs(np.log(most / phi))))
+            place = nearest_phi(most, phi)
             length = run["snapshot_box_length"].values[at]
             position = np.ascontiguousarray(run["snapshot_position"].values[at])
             distance = DISTANCES[1.5 * length / run.attrs["monomer_radius"] > DISTANCES]
@@ -249,7 +259,7 @@ def joined(one, other):
     numbers = np.union1d(parts[0][PHI], parts[1][PHI])
     most = max(one["snapshot_phi"].values, other["snapshot_phi"].values, key=len)
     for k, part in enumerate(parts):
-        nearest = [int(np.argmin(np.abs(np.log(most / phi)))) for phi in part["snapshot_phi"].values]
+        nearest = [nearest_phi(most, phi) for phi in part["snapshot_phi"].values]
         parts[k] = part.assign_coords({SNAPSHOT: nearest}).reindex({PHI: numbers, SNAPSHOT: range(len(most))})
     of_seeds = [name for name in one.variables if SEED in one[name].dims]
     table = xr.concat([part[of_seeds] for part in parts], SEED).drop_vars([PHI, SNAPSHOT])
@@ -271,12 +281,24 @@ def typed(table):
     return table
 
 
+def nearest_phi(found, phi):
+    """Which of some filling factors, (k,), is the nearest to one, in the logarithm."""
+    return int(np.argmin(np.abs(np.log(found / phi))))
+
+
+def snapshots_at(found, wanted):
+    """Filling factor -> which of the snapshots found, (k,), was taken there; without those that a run did not pass.
+
+    A run that begins denser has none there, and one takes its snapshots at records, up to `NEAR` beside.
+    """
+    nearest = {phi: nearest_phi(found, phi) for phi in wanted} if len(found) else {}
+    return {phi: at for phi, at in nearest.items() if abs(np.log(found[at] / phi)) < NEAR}
+
+
 def snapshots(files, settings, say):
     """Positions of one run at some filling factors, wrapped into the box about its middle, of those that it passed."""
     run = read_run(files["run"])
-    kept = run["snapshot_phi"].values
-    nearest = {phi: int(np.argmin(np.abs(np.log(kept / phi)))) for phi in settings["phi"]}
-    wanted = [at for phi, at in nearest.items() if abs(np.log(kept[at] / phi)) < 2.0 * np.log(RECORD_STEP)]
+    wanted = list(snapshots_at(run["snapshot_phi"].values, settings["phi"]).values())
     if not wanted:
         raise InputError(
             f"figure 3: the run has no snapshot at phi = {', '.join(f'{phi:g}' for phi in settings['phi'])}; it goes "

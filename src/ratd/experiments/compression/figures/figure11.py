@@ -3,10 +3,8 @@
 import numpy as np
 
 from ratd.experiments.compression.figures.common import COLOURS, DASHES, read_sets, seeds_text
+from ratd.experiments.compression.tables import snapshots_at
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, logarithmic, new_figure, styled
-
-NEAR = 0.03
-"""ln phi by which a snapshot may lie beside the filling factor that is shown."""
 
 
 @styled
@@ -15,12 +13,10 @@ def figure11(table, wanted=(0.003, 0.01, 0.03, 0.1)):
     figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{table.attrs['material']}, {seeds_text(table)}")
     axes = figure.subplots()
     distance, found = table["distance"].values, table["snapshot_phi"].values
-    kept = [(phi, int(np.argmin(np.abs(np.log(found / phi))))) for phi in wanted] if len(found) else []
-    # a run that begins denser has no snapshot there
-    kept = [(phi, at) for phi, at in kept if abs(np.log(found[at] / phi)) < NEAR]
+    kept = snapshots_at(found, wanted)
     if not kept:
         empty(axes, "no snapshot at these filling factors")
-    for k, (phi, at) in enumerate(kept):
+    for k, (phi, at) in enumerate(kept.items()):
         numbers = table["number_within"].values[:, at]
         numbers = numbers[np.isfinite(numbers[:, 0])].mean(axis=0)
         label = rf"$\phi$ = {phi:g}"
