@@ -170,7 +170,8 @@ def evolve(
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
-    foresee, begun, moved = intervals.Interval(intervals.FORECAST), state.scalar[TIME], _moved(rows, rows[0])
+    foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
+    moved = _moved(rows, rows[0])
     while len(rows) <= records:
         goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
         state, code = run(state, law, drive, box, integrator, goal)
@@ -186,9 +187,11 @@ def evolve(
         if checkpoint is not None and to_save.passed():
             checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
         if foresee is not None and foresee.passed():
-            foresee = _warn_of_long(_to_go(to_tell, begun, state, duration), duration, state.scalar[DT])
+            now = state.scalar[TIME]
+            foresee = _warn_of_long(pace.to_go(duration - now, now), duration, state.scalar[DT])
         if progress is not None and to_tell.passed():
-            progress(state.scalar[TIME] / duration, _to_go(to_tell, begun, state, duration), rows[-1])
+            now = state.scalar[TIME]
+            progress(now / duration, pace.to_go(duration - now, now), rows[-1])
     _warn_of_passing(velocity, radius, state.scalar[DT])
     return _dataset(state, rows, pictures, law, box)
 
@@ -203,12 +206,6 @@ def _warn_of_passing(velocity, radius, timestep):
             "timestep",
             stacklevel=3,
         )
-
-
-def _to_go(since, begun, state, duration):
-    """Seconds to go of a run that goes on since an interval began, at a time `begun` of its own."""
-    time = state.scalar[TIME]
-    return since.elapsed() * (duration - time) / (time - begun)
 
 
 def _warn_of_long(to_go, duration, timestep):

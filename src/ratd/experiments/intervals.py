@@ -1,8 +1,9 @@
-"""How often a run that goes on keeps a checkpoint and says how far it is, and when it warns that it is long."""
+"""How often a run that goes on keeps a checkpoint and says how far it is, and how long it still takes."""
 
+import math
 import time
 
-__all__ = ["CHECKPOINT", "FORECAST", "LONG", "PROGRESS", "Interval"]
+__all__ = ["CHECKPOINT", "FORECAST", "LONG", "PROGRESS", "Interval", "Pace"]
 
 CHECKPOINT = 60.0
 """Seconds between two checkpoints."""
@@ -24,7 +25,7 @@ class Interval:
 
     def __init__(self, seconds):
         self.seconds = seconds
-        self.start = self.last = time.monotonic()
+        self.last = time.monotonic()
 
     def passed(self):
         """Whether it is time; if so, the next interval begins."""
@@ -34,6 +35,28 @@ class Interval:
         self.last = now
         return True
 
-    def elapsed(self):
-        """Seconds since the beginning."""
-        return time.monotonic() - self.start
+
+class Pace:
+    """Says how long a run still takes, by its pace in the latter half of the time so far.
+
+    So the beginning, in which code is compiled, and a part with other steps are soon forgotten.
+
+    Parameters
+    ----------
+    done : float
+        What is done when the run begins or goes on.
+    """
+
+    def __init__(self, done):
+        self.marks = [(time.monotonic(), done)]
+        self.begun = self.marks[0]
+
+    def to_go(self, left, done):
+        """Seconds in which so much more will be done, when so much is done now; infinite where nothing is yet."""
+        now = time.monotonic()
+        half = 0.5 * (self.begun[0] + now)
+        while len(self.marks) > 1 and self.marks[1][0] <= half:
+            del self.marks[0]
+        since, before = self.marks[0] if self.marks[0][1] < done else self.begun
+        self.marks.append((now, done))
+        return max(0.0, left) * (now - since) / (done - before) if done > before else math.inf

@@ -110,7 +110,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         state, tables = loaded
         rows, kept = list(tables["rows"]), list(tables["kept"])
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
-    begun = rows[-1][0]
+    pace = intervals.Pace(rows[-1][0])
     for number in range(len(rows), len(marks) + 1):
         if stop is not None and stop(np.array(rows)):
             break
@@ -133,8 +133,8 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         if checkpoint is not None and to_save.passed():
             checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
         if tell is not None and to_tell.passed():
-            done = (rows[-1][0] - begun) / (marks[-1] - begun)
-            tell(as_dict(rows[-1]), to_tell.elapsed() * (1.0 / done - 1.0))
+            now = rows[-1][0]
+            tell(as_dict(rows[-1]), pace.to_go(marks[-1] - now, now))
     kept = np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
     return state, np.array(rows), kept
 

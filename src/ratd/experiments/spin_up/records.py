@@ -146,7 +146,7 @@ class Watch:
     def __init__(self, run, progress):
         self.omega_1, self.mass, self.progress = run.motion.omega_1, run.rows[0][2], progress
         self.to_tell = intervals.Interval(intervals.PROGRESS)
-        self.begun = self._done(run.state.drive[GREATEST])
+        self.pace = intervals.Pace(self._done(run.state.drive[GREATEST]))
 
     def _done(self, omega):
         """A number that grows evenly with the steps under the constant-epsilon law: 1 at omega_1, 3 at the end."""
@@ -160,5 +160,5 @@ class Watch:
             return
         done = self._done(row[0])
         # Most of the mass gone: each further step costs little.
-        to_go = self.to_tell.elapsed() * max(0.0, 3.0 - done) / max(done - self.begun, 1e-9) * row[2] / self.mass
+        to_go = self.pace.to_go((3.0 - done) * row[2] / self.mass, done)
         self.progress(row[0], row[2] / self.mass, to_go, int(run.state.counter[STEPS]))
