@@ -40,6 +40,7 @@ HOMES = {
     "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
     "pulled": "ratd.experiments.spin_up.pulled",
+    "shapes": "ratd.experiments.spin_up.shapes",
     **dict.fromkeys(("built_clusters", "collisions"), "ratd.experiments.collision.files"),
     **dict.fromkeys(
         ("collision_table", "collision_thresholds", "collision_clusters"), "ratd.experiments.collision.tables"
