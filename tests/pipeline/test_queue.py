@@ -1,11 +1,13 @@
 """The queue: order, what is left, what fails; its files are tested with those of the experiments."""
 
+import fcntl
 import time
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
-from ratd.pipeline.queue import Task, key, state, work
+from ratd.pipeline.queue import Task, command, key, state, work
 
 
 class Kept:
@@ -69,3 +71,19 @@ def test_a_table_that_gets_no_row_any_more_is_still_written():
     tasks += [Task(second, key(number), partial(row, number)) for number in range(3)]
     work(tasks, say=lambda text: None)
     assert first.asked == second.asked == 4
+
+
+def test_a_command_that_waited_reads_what_the_other_one_left(tmp_path):
+    """The tables are read with the lock held: rows that were made meanwhile are not made again."""
+    held = []
+    lock = tmp_path / "queue.lock"
+
+    def tasks(plan, folder):
+        with open(lock, "a") as handle, pytest.raises(BlockingIOError):
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        held.append(folder)
+        return []
+
+    module = SimpleNamespace(__spec__=SimpleNamespace(name="none"), __doc__="Nothing.")
+    how = {"config": (), "data": "data", "load": lambda: SimpleNamespace(results=tmp_path), "tasks": tasks}
+    assert command([], module=module, what="rows", **how) == 0 and held == ["data"]

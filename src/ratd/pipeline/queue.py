@@ -235,12 +235,14 @@ def command(words, *, module, what, config, data, load, tasks, study=None):
 
     try:
         plan = load(*(arguments.config or [path.format(study=name) for path in config]))
-        wanted = tasks(plan, arguments.data or data.format(study=name))
+        folder = arguments.data or data.format(study=name)
         if arguments.list:
-            print(state(wanted, what))
+            print(state(tasks(plan, folder), what))
             return 0
-        until = None if arguments.minutes is None else time.monotonic() + 60 * arguments.minutes
         with locked(Path(plan.results, "queue.lock"), say):
+            # read once nobody else writes them: a command that had to wait goes on from what the other one left
+            wanted = tasks(plan, folder)
+            until = None if arguments.minutes is None else time.monotonic() + 60 * arguments.minutes
             left = work(wanted, until=until, say=say, processes=arguments.processes)
     except (InputError, FileError) as error:
         say(f"error: {error}")
