@@ -8,6 +8,7 @@ from tiny_pipeline import ROOT
 
 QUEUES = (
     "ratd.experiments.spin_up.study",
+    "ratd.experiments.spin_up.shapes",
     "ratd.experiments.collision.study",
     "ratd.validation.pulling",
     "ratd.validation.lammps_spin_up",

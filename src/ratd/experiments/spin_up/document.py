@@ -22,6 +22,7 @@ from ratd.experiments.spin_up.findings.literature import of_literature
 from ratd.experiments.spin_up.findings.mark_rules import of_mark_rules
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
+from ratd.experiments.spin_up.findings.shapes import of_shapes
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
 from ratd.experiments.spin_up.pulled import read_pulled
 from ratd.experiments.spin_up.eq33 import fit_ensemble
@@ -45,6 +46,7 @@ from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
+from ratd.experiments.spin_up.shapes import read_shapes
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
@@ -106,6 +108,8 @@ class Data(NamedTuple):
         Of figure 10.
     pulled : pandas.DataFrame
         Grains that were pulled apart.
+    shapes : pandas.DataFrame
+        Grains that were looked at on their way to the break.
     lammps : dict of str to pandas.DataFrame
         Thresholds of both codes, from the validation, see `LAMMPS`.
     mark_rules : pandas.DataFrame or None
@@ -126,6 +130,7 @@ class Data(NamedTuple):
     others: dict
     pairs: list
     pulled: pd.DataFrame
+    shapes: pd.DataFrame
     lammps: dict
     mark_rules: pd.DataFrame | None
     studies: dict
@@ -196,6 +201,7 @@ def read_data(data=DATA):
         tables=tables,
         others={name: io.read(data / f"parameters_{name}.nc", "parameters").to_dataframe() for name in OTHERS},
         pulled=read_pulled(data / "pulled"),
+        shapes=read_shapes(data / "shapes"),
         studies=studies(data, files, printed),
         lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
         mark_rules=io.read(rules, "validation_mark_rules").to_dataframe() if rules.is_file() else None,
@@ -230,7 +236,7 @@ def findings(data, fits):
     values |= beside.of_formulae(data.tables["formulae"])
     values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
     values |= beside.composition_tables()
-    values |= of_pulled(data.pulled, data.driven)
+    values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)
     printed = load(*CONFIGS).config["literal"]
     values |= {"p.acceleration": printed["angular_acceleration"], "p.step": printed["timestep_factor"]}
     values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])

@@ -40,7 +40,7 @@ MATERIAL_NAME = "q-S"
 TYPES = ("BA", "BAM1", "BAM2")
 SIZES_NM = (450,)
 """Some 1300 monomers: with fewer than a hundred a fractal dimension is uncertain by 0.4 or more."""
-SEEDS = range(10)
+SEEDS = range(30)
 LOOKS = ("rest", "before loss", "disruption")
 """At rest; the last record in which the grain is whole; at omega_disr. The flag in a file is the place in this list."""
 
