@@ -43,7 +43,6 @@ __all__ = [
     "runs_of_solid_grains",
 ]
 
-TYPES = ("BA", "BAM1", "BAM2")
 GRAIN = ["material", "type", "a_eff", "seed"]
 PARTED = 0.01
 """Part by which a pair may part off the exact answer."""

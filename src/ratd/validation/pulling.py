@@ -30,6 +30,7 @@ from ratd.experiments.compression.strain import state_of
 from ratd.experiments.compression.stretch import stretch
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import plan as plans
+from ratd.experiments.spin_up.cells import TYPES
 from ratd.experiments.spin_up.grow import grown
 from ratd.experiments.spin_up.pulled import AXES, KIND, VARIANTS, WAYS, outer_radius
 from ratd.geometry.shape import principal_axes
@@ -42,7 +43,6 @@ __all__ = ["BOX", "DATA", "ENDS", "by_its_ends", "in_the_box", "main", "pulled",
 CONFIG = ("config/config.yaml", "config/spin_up.yaml")
 DATA = "docs/reproduction/data/pulled"
 MATERIALS = ("q-S", "a-C")
-TYPES = ("BA", "BAM1", "BAM2")
 SIZES_NM = (200, 300, 400)
 SEEDS = range(4)
 BOX = {

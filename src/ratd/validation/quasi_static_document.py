@@ -14,7 +14,7 @@ from ratd.base.errors import FileError
 from ratd.base.measured import Measured, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
 from ratd.experiments.spin_up.grain_table import read_spun_up
 from ratd.experiments.spin_up.run_files import read_table
@@ -34,7 +34,6 @@ CHECKS = ("quasi_static", "remnant")
 ENSEMBLE = Path("docs/reproduction/data/spun_up/prescribed")
 BEFORE = DATA / "without_waiting.nc"
 """The grains as the queue of spin-ups finds them, and as they were found by spin-ups that do not wait."""
-TYPES = ("BA", "BAM1", "BAM2")
 CLASSES = {"100 to 200 nm": (0, 250), "300 nm": (250, 400), "450 nm": (400, 600)}
 """Size classes [nm]."""
 SIZES = {"small": (0, 225), "middle": (225, 425), "large": (425, 600)}

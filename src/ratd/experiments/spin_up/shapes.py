@@ -20,10 +20,11 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.experiments.spin_up import plan as plans
-from ratd.experiments.spin_up.cells import sort_cells
+from ratd.experiments.spin_up.cells import TYPES, sort_cells
 from ratd.experiments.spin_up.grow import grown
-from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.marks import ROUNDING, disruption
 from ratd.experiments.spin_up.spin import arguments, turn
+from ratd.experiments.spin_up.study import settings_of
 from ratd.geometry.shape import fractal_dimension
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -37,7 +38,6 @@ CONFIG = ("config/config.yaml", "config/spin_up.yaml")
 DATA = "docs/reproduction/data/shapes"
 DRIVE = "prescribed"
 MATERIAL_NAME = "q-S"
-TYPES = ("BA", "BAM1", "BAM2")
 SIZES_NM = (450,)
 """Some 1300 monomers: with fewer than a hundred a fractal dimension is uncertain by 0.4 or more."""
 SEEDS = range(30)
@@ -100,10 +100,7 @@ def tasks(plan, data):
 
 def _table(plan, data, kind):
     """The table of a type."""
-    settings = {
-        "growth": plan.growth(MATERIAL_NAME, kind),
-        "spin_up": {"drive": DRIVE, **plan.spin_up_of(DRIVE, kind)},
-    }
+    settings = settings_of(plan, DRIVE, MATERIAL_NAME, kind)
     path = Path(data, f"{MATERIAL_NAME}_{kind}.nc")
     return Table(path, KIND, ("a_eff", "seed"), plan.materials[MATERIAL_NAME], settings)
 
@@ -155,7 +152,7 @@ def looks(run):
     """
     omega, whole = run["omega"].values, run["mass"].values / run.attrs["initial_mass"]
     at = {"rest": 0}
-    kept = np.flatnonzero(whole >= 1.0 - 1e-9)
+    kept = np.flatnonzero(whole >= 1.0 - ROUNDING)
     if len(kept):
         at["before loss"] = kept[-1]
     found = disruption(run)["omega_disr"].item()

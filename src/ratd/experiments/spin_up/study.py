@@ -26,7 +26,7 @@ from ratd.experiments.spin_up.spin import arguments, turn
 from ratd.pipeline.provenance import settings_hash, source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 
-__all__ = ["CONFIG", "DATA", "ENSEMBLE", "main", "tasks"]
+__all__ = ["CONFIG", "DATA", "ENSEMBLE", "main", "settings_of", "tasks"]
 
 ENSEMBLE = "spun_up"
 CONFIG = ("config/config.yaml", "config/spin_up.yaml", "config/studies/{study}.yaml")
@@ -68,9 +68,14 @@ def tasks(plan, data):
 
 def _table(plan, data, drive, material, kind):
     """The table of a drive, material and type."""
-    settings = {"growth": plan.growth(material, kind), "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
+    settings = settings_of(plan, drive, material, kind)
     path = Path(data, drive, f"{material}_{kind}.nc")
     return Table(path, "spun_up", _KEY, plan.materials[material], settings)
+
+
+def settings_of(plan, drive, material, kind):
+    """What all spin-ups of a drive, material and type have in common: the settings that a table is known by, dict."""
+    return {"growth": plan.growth(material, kind), "spin_up": {"drive": drive, **plan.spin_up_of(drive, kind)}}
 
 
 def spun_up(growth, how, seed, *, checkpoint=None, source=""):

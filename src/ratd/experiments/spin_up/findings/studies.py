@@ -14,7 +14,7 @@ from ratd.aggregates.growth import grain_radii
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
 from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
-from ratd.experiments.spin_up.cells import cell_of, size_key
+from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
@@ -26,7 +26,6 @@ ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
 EQUAL = ("equal_30nm", "equal_41nm")
 OTHER_MONOMERS = (*EQUAL, "second_reading")
 MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
-TYPES = ("BA", "BAM1", "BAM2")
 POWERS = {1: "<a>", 2: "<a²>^(1/2)", 3: "<a³>^(1/3)"}
 """Means of the radii of a grain's monomers that may stand for <a_mon> in Eq. 33."""
 
