@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.answer import ratios
+from benchmarks.answer import SLOW, ratios
 from benchmarks.tables import frame, pair_ratios, projected_range
 
 MOST_NS = {"BAM2": 17.0, "BA": 15.0}
@@ -97,10 +97,11 @@ def goals(out):
         )
     answers = frame(out, "answer")
     if answers is not None:
+        # what was run is faster than the goal asks for, and its answer is off
+        epsilon = answers["epsilon"].min()
         least = min(ratios(answers).values())
-        found.append(
-            Goal("LAMMPS over ratd, time to omega at 25 % mass loss, least type", "times", least, 300.0, False)
-        )
+        what = f"least type, projected from {least * SLOW / epsilon:.3g} times at epsilon = {epsilon:.2g} to {SLOW:g}"
+        found.append(Goal(f"LAMMPS over ratd, time to omega at 25 % mass loss, {what}", "times", least, 300.0, False))
     squeezed = frame(out, "compression")
     if squeezed is not None:
         largest = squeezed[squeezed["monomers"] == squeezed["monomers"].max()].set_index("code")

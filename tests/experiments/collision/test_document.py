@@ -3,6 +3,7 @@
 When a claim fails after further collisions: reread the sentence in docs/templates/collision.md, mend it and the claim.
 """
 
+import re
 from importlib import import_module
 from types import SimpleNamespace
 
@@ -13,7 +14,15 @@ import pytest
 from pictures_alike import unlike
 from ratd.experiments.collision import document_plan as page
 from ratd.experiments.collision.claims import claims
-from ratd.experiments.collision.document import _calibrated, values, with_error
+from ratd.experiments.collision.document import (
+    _below_ceiling,
+    _by_v_frag,
+    _calibrated,
+    _exponents,
+    _same_collisions,
+    values,
+    with_error,
+)
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -107,3 +116,70 @@ def test_the_damping_time_is_fixed_on_one_radius_and_predicts_the_others():
     value, error = map(float, found["predicted velocity 453nm"].split(" ± "))
     assert value == pytest.approx(16.0 * 1.25, rel=0.01) and 0.1 < error < 0.5
     assert _calibrated(table[table["damping_time"] < 1.5e-9]) == {}
+
+
+def test_the_radius_that_has_a_fragmentation_velocity():
+    """v_frag goes as 1/radius: MRN with 20 m/s is like the radius between those of 25 and 15 m/s."""
+    rows = [
+        dict(law="velocity", cluster=f"{nm}nm", impact_parameter=0.0, radius=nm * 1e-9, velocity=7500 / nm, error=0.75)
+        for nm in (250, 300, 500)
+    ]
+    thresholds = pd.DataFrame([*rows, rows[0] | {"cluster": "mrn", "radius": np.nan, "velocity": 20.0, "error": 1.0}])
+    speeds = [10.0, 20.0, 30.0]
+    table = pd.DataFrame(
+        [
+            dict(law="velocity", cluster=name, impact_parameter=0.0, sample=sample, velocity=speed, X=X)
+            for name in ("mrn", "353nm")
+            for sample, fall in ((1, 0.3), (2, 0.2))
+            for speed, X in zip(speeds, (0.9, fall, 0.0), strict=True)
+        ]
+    )
+    found = _by_v_frag(table, thresholds)
+    middle, low, high = map(float, re.findall(r"\d+", found["radius velocity mrn v_frag"]))
+    assert middle == 375 and 340 < low < 365 and 385 < high < 420
+    assert found["by sample v_frag velocity 353nm"] == "25.0, 22.5"
+
+
+def test_exponents_hold_the_errors_of_the_velocities():
+    """v_frag is 1/radius without scatter, each known to a tenth; v_stick falls faster between small radii."""
+    radii = np.array([298, 314, 353, 396, 453, 570]) * 1e-9
+    rows = [
+        dict(
+            law=f"law {energy}", cluster=f"{radius * 1e9:.0f}nm", friction="velocity", damping_time=0.5e-9, radius=radius,
+            impact_parameter=0.0, surface_energy=energy, velocity=energy / radius, error=0.1 * energy / radius,
+            sticking_velocity=energy / radius**2 if radius > 3e-7 else 2.0 * energy / radius**2,
+        )
+        for energy, radius in [(0.025, radius) for radius in radii] + [(0.05, radii[-1]), (0.0125, radii[-1])]
+    ]  # fmt: skip
+    found = _exponents(pd.DataFrame(rows))
+    at = np.log(radii)
+    power, error = map(float, found["exponent radius"].split(" ± "))
+    assert power == pytest.approx(-1.0, abs=0.01)
+    assert error == pytest.approx(0.1 / np.sqrt(np.sum((at - at.mean()) ** 2)), rel=0.05)
+    low, high = map(float, found["exponent radius stick"].split(" to "))
+    assert low < -5.0 and high == pytest.approx(-2.0, abs=0.01)
+    assert float(found["exponent energy"].split(" ± ")[0]) == pytest.approx(1.0, abs=0.01)
+
+
+def test_collisions_that_were_done_once_more_stand_beside_the_same_ones():
+    """Of four collisions two were done once more."""
+    both = dict(cluster="353nm", impact_parameter=0.0, velocity=15.0)
+    rows = [dict(law="velocity", sample=s, seed=k, X=s + 0.1 * k, N_s=0.5) | both for s in (1, 2) for k in (0, 1)]
+    rows += [dict(law="half_step", sample=s, seed=0, X=9.0, N_s=0.5) | both for s in (1, 2)]
+    found = _same_collisions(pd.DataFrame(rows))
+    assert found["same X half_step 353nm 15"] == "1.50 ± 0.50" and found["same N_s half_step 353nm 15"] == "0.50"
+
+
+def test_a_velocity_at_the_ceiling_says_nothing_of_the_radius():
+    """At 15 m/s MRN has the N_s of 300 nm; at 30 m/s it is at its ceiling, which 250 nm has."""
+    cell = dict(law="velocity", impact_parameter=0.0, sample=1, seed=0, X=0.1, energy_half=0.1, second_contact=0.5)
+    equal = [
+        dict(cluster=f"{nm}nm", largest_radius=nm * 1e-9, mean_sphere_radius=nm * 1e-9, largest_share=0.01,
+             velocity=speed, N_s=0.001 * nm + extra) | cell
+        for nm in (250, 300, 400) for speed, extra in ((15.0, 0.0), (30.0, 0.4))
+    ]  # fmt: skip
+    one = dict(cluster="mrn", largest_radius=2e-6, mean_sphere_radius=1e-7, largest_share=0.35) | cell
+    table = pd.DataFrame([*equal, one | {"velocity": 15.0, "N_s": 0.3}, one | {"velocity": 30.0, "N_s": 0.65}])
+    found = _below_ceiling(table)
+    assert found["ceiling velocity 30"] == "100 %" and found["ceiling velocity 15"] == "46 %"
+    assert found["radius below velocity N_s"].startswith("300 ")

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.experiments.collision.fragmentation import bootstrap_means, fragmentation, fragmentation_velocity
+from ratd.experiments.collision.fragmentation import bootstrap_means, crossings, fragmentation, fragmentation_velocity
 
 
 def made_up(piece, radius, cluster):
@@ -126,3 +126,10 @@ def test_a_velocity_that_one_sample_has_alone_counts_with_its_rotations():
     drawn = bootstrap_means(table, "X", [1, 2], 5000, rng)
     assert np.isfinite(drawn).all() and drawn[1].std() == pytest.approx(0.05, rel=0.05)
     assert fragmentation_velocity(table)["found"] == 1.0
+
+
+def test_all_velocities_at_which_x_falls_through_the_limit():
+    """It falls from 0.4 to 0 between 10 and 20 m/s, and from 0.2 to 0.1 between 30 and 40 m/s."""
+    velocity, mean = np.array([10.0, 20.0, 30.0, 40.0]), np.array([0.4, 0.0, 0.2, 0.1])
+    np.testing.assert_allclose(crossings(velocity, mean, 0.15), [16.25, 35.0])
+    assert len(crossings(velocity, mean, 0.5)) == 0

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratd.base.units import NM
 from ratd.experiments.collision.likeness import is_equal
-from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.fragmentation import fragmentation_velocity, mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper
 
@@ -75,9 +75,16 @@ class _Found:
         """Fragmentation velocity over the sticking velocity of two of the spheres."""
         return self.frag(law, cluster) / self.threshold(law, cluster)["sticking_velocity"]
 
-    def alike(self, law, quantity):
-        """Radius [m] of the equal spheres that MRN is like."""
-        own = self.likeness[(self.likeness["law"] == law) & (self.likeness["cluster"] == "mrn")]
+    def by_sample(self, law, cluster):
+        """Fragmentation velocity [m/s] of each sample, (k,) array."""
+        own = self.table[(self.table["law"] == law) & (self.table["cluster"] == cluster)]
+        central = own[own["impact_parameter"] == 0.0]
+        each = central.groupby("sample")[["velocity", "X"]]
+        return np.array([fragmentation_velocity(part, samples=2)["velocity"] for _, part in each])
+
+    def alike(self, law, quantity, cluster="mrn"):
+        """Radius [m] of the equal spheres that a cluster is like."""
+        own = self.likeness[(self.likeness["law"] == law) & (self.likeness["cluster"] == cluster)]
         return own[own["quantity"] == quantity]["radius"].iloc[0]
 
 
@@ -122,14 +129,25 @@ def _which_radius(of):
         "of MRN sliding takes most": of.mean("by_sliding", "velocity", "mrn", 30)
         > 0.5
         > of.mean("by_damping", "velocity", "mrn", 30),
-        "by X MRN without its smallest spheres is like 0.353 um": abs(
+        "MRN without its smallest spheres has the v_frag of 0.353 um, and not that of its own recipe": abs(
             of.frag("velocity", "mrn100") - of.frag("velocity", "353nm")
         )
-        < 3.0,
-        "by N_s it is not": all(
+        < 3.0
+        and of.frag("velocity", "mrn100") > 1.7 * of.frag("velocity", "453nm"),
+        "by N_s no radius is like MRN without its smallest spheres": all(
             of.mean("N_s", "velocity", "353nm", speed) > of.mean("N_s", "velocity", "mrn100", speed) + 0.1
             for speed in (15, 30)
         ),
+        "without giants the recipe of 283 nm is nearly right": all(
+            abs(of.alike("velocity", quantity, "mrn100_to_800") - 283e-9) < 25e-9 for quantity in ("X", "N_s")
+        ),
+        "the fragmentation velocities of the samples of MRN and of 0.353 um do not overlap": bool(
+            of.by_sample("velocity", "mrn").min() > of.by_sample("velocity", "353nm").max()
+        ),
+        "with springs MRN is at its ceiling at 30 m/s": of.mean("N_s", "spring", "mrn", 30)
+        > 0.95 * (1.0 - of.mean("largest_share", "spring", "mrn", 30)),
+        "energy left of MRN is not that of 0.314 um at 15 m/s": of.mean("energy_half", "velocity", "mrn", 15)
+        < 0.75 * of.mean("energy_half", "velocity", "314nm", 15),
         "with springs the recipe's radius breaks less than MRN": of.mean("X", "spring", "353nm", 15)
         > max(of.mean("X", "spring", name, 15) for name in ("mrn", "mrn100")),
     }
@@ -237,7 +255,7 @@ def _equal_spheres(of):
             for name, velocity in printed.items()
             if np.isfinite(of.frag("velocity", name))
         ),
-        "v_frag is about 20 times v_stick at A = 0.5 ns": bool(16.0 < at_half.min() and at_half.max() < 24.5),
+        "v_frag is 17 to 22 times v_stick at A = 0.5 ns": bool(16.5 < at_half.min() and at_half.max() < 22.5),
         "energy of the impact over the contacts grows sevenfold": 5.5
         < of.threshold("velocity", "298nm")["energy_per_contact"]
         / of.threshold("velocity", "570nm")["energy_per_contact"]

@@ -3,13 +3,19 @@
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.mrn import free_samples, moment_of_length, sample_length
+from ratd.aggregates.mrn import SMALLEST, free_samples, moment_of_length, sample_length
 from ratd.base.materials import MATERIALS
 from ratd.base.measured import quotient
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.likeness import is_equal
-from ratd.experiments.collision.fragmentation import mean_and_error, means
+from ratd.experiments.collision.fragmentation import (
+    STICKING,
+    crossings,
+    fragmentation_velocity,
+    mean_and_error,
+    means,
+)
 from ratd.experiments.collision.likeness import likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
@@ -25,8 +31,12 @@ COLUMNS = (
 )  # fmt: skip
 
 
-CEILING_FROM = 35.0
-"""Velocity [m/s] from which on N_s of MRN is near its ceiling."""
+NEAR_CEILING = 0.85
+"""Part of what N_s cannot exceed from which on it says more of the largest sphere than of fragmentation."""
+SMALLEST_OF = {"mrn": SMALLEST, "mrn100": 100 * NM}
+"""Least radius [m] of clusters of the MRN law, up to 2.5 um all."""
+SAME = ("longer", "half_step")
+"""Laws under which some of the collisions of the law "velocity" were done once more."""
 
 
 def with_error(mean, error, digits=None):
@@ -74,13 +84,18 @@ def values(table, thresholds, likeness):
         found[f"energy {key}"] = f"{row['energy_per_contact']:.2g} ± {relative:.0%}" if is_close(row) else "–"
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
-        found[f"radius {key}"], found[f"q {key}"] = _alike(row)
+        found[f"radius {key}"] = _alike(row, ("radius", "radius_low", "radius_high"), 1.0 / NM, 0)
+        if row["cluster"] in SMALLEST_OF:
+            lengths = (row[name] for name in ("radius", "radius_low", "radius_high"))
+            own = dict(zip("abc", (moment_of_length(one, SMALLEST_OF[row["cluster"]]) for one in lengths), strict=True))
+            found[f"q {key}"] = _alike(own | {"at_end": row["at_end"]}, "abc", 1.0, 1)
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
     found |= _by_sample(table, "velocity", "mrn") | _shorter(table, "velocity", "mrn")
     found |= _calibrated(thresholds)
     found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
-    found |= _free() | _constants() | _of_same_samples(table) | _recipe(thresholds) | _below_ceiling(table)
+    found |= _free() | _constants() | _of_same_samples(table) | _recipe(thresholds) | _by_v_frag(table, thresholds)
+    found |= _below_ceiling(table) | _same_collisions(table) | _first_fall(table, thresholds)
     found |= {
         "collisions": str(len(table)),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
@@ -173,21 +188,112 @@ def _of_same_samples(table):
 
 
 def _recipe(thresholds):
-    """``too low``: by how much of v_frag of MRN that of the recipe's 0.353 um is too low, rate friction."""
+    """``too low``: by how much of v_frag of MRN that of the recipe's 0.353 um is too low, rate friction.
+
+    ``too low speed``: the same in m/s, and ``too low errors`` over its error.
+    """
     own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
     if not {"mrn", "353nm"} <= set(own.index):
         return {}
     (true, error), (equal, other) = (own.loc[name, ["velocity", "error"]] for name in ("mrn", "353nm"))
     ratio, spread = quotient((equal, other), (true, error))
-    return {"too low": f"{100 * (1 - ratio):.0f} ± {100 * spread:.0f} %"}
+    gap, wide = true - equal, np.hypot(error, other)
+    return {
+        "too low": f"{100 * (1 - ratio):.0f} ± {100 * spread:.0f} %",
+        "too low speed": with_error(gap, wide, 1),
+        "too low errors": f"{gap / wide:.1f}",
+    }
+
+
+def _by_v_frag(table, thresholds):
+    """``radius velocity mrn v_frag``: radius [nm] of the equal spheres that have the v_frag of MRN, rate friction.
+
+    v_frag of equal spheres is linear between the logarithms of both; one error, of both, to either side. ``by sample
+    v_frag velocity mrn`` and ``... 353nm``: v_frag [m/s] of each sample.
+    """
+    central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
+    own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
+    names = [name for name in own.index if name.removesuffix("nm").isdigit()]
+    equal = own.loc[names].dropna(subset="velocity").sort_values("velocity")
+    found = {}
+    if "mrn" in own.index and len(equal) > 1:
+        rng = np.random.Generator(np.random.PCG64(0))
+        true, error = own.loc["mrn", ["velocity", "error"]]
+        speed, spread = equal["velocity"].to_numpy(), equal["error"].to_numpy()
+        length = np.log(equal["radius"].to_numpy())
+
+        def radius(velocity, of_equal):
+            order = np.argsort(of_equal)
+            return np.exp(np.interp(np.log(velocity), np.log(of_equal[order]), length[order])) / NM
+
+        drawn = [radius(true + error * rng.normal(), speed + spread * rng.normal(size=len(speed))) for _ in range(2000)]
+        low, high = np.quantile(drawn, [0.16, 0.84])
+        found["radius velocity mrn v_frag"] = f"{radius(true, speed):.0f} ({low:.0f}–{high:.0f})"
+    for name in ("mrn", "353nm"):
+        each = [
+            fragmentation_velocity(part, samples=2)["velocity"]
+            for _, part in central[central["cluster"] == name].groupby("sample")
+        ]
+        found[f"by sample v_frag velocity {name}"] = ", ".join(f"{velocity:.1f}" for velocity in each)
+    return found
 
 
 def _below_ceiling(table):
-    """``radius below N_s``: what MRN is like by N_s at the velocities at which it has not reached its ceiling."""
-    own = table[(table["law"] == "velocity") & ((table["cluster"] == "mrn") | is_equal(table))]
-    rows = likeness_table(own[own["velocity"] < CEILING_FROM])
-    rows = rows[(rows["cluster"] == "mrn") & (rows["quantity"] == "N_s")]
-    return {"radius below N_s": _alike(rows.iloc[0])[0]} if len(rows) else {}
+    """``radius below LAW N_s``: what MRN is like by N_s where it is below `NEAR_CEILING` of what it cannot exceed.
+
+    ``ceiling LAW 30``: N_s of MRN over the mean of what its collisions cannot exceed.
+    """
+    found = {}
+    for law in ("velocity", "spring"):
+        own = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
+        one = own[own["cluster"] == "mrn"].assign(ceiling=1.0 - own["largest_share"])
+        part = {
+            velocity: mean_and_error(at, "N_s")[0] / mean_and_error(at, "ceiling")[0]
+            for velocity, at in one.groupby("velocity")
+        }
+        found |= {f"ceiling {law} {velocity:g}": f"{100 * share:.0f} %" for velocity, share in part.items()}
+        below = [velocity for velocity, share in part.items() if share < NEAR_CEILING]
+        rows = likeness_table(own[((own["cluster"] == "mrn") | is_equal(own)) & own["velocity"].isin(below)])
+        for _, row in rows[(rows["cluster"] == "mrn") & (rows["quantity"] == "N_s")].iterrows():
+            found[f"radius below {law} N_s"] = _alike(row, ("radius", "radius_low", "radius_high"), 1.0 / NM, 0)
+    return found
+
+
+def _same_collisions(table):
+    """What collisions that were done once more, under a law of `SAME`, had under the law "velocity".
+
+    ``same X longer 353nm 20``, ``same v_frag longer 298nm``.
+    """
+    alike = ["cluster", "velocity", "sample", "seed"]
+    table = table[table["impact_parameter"] == 0]
+    base = table[table["law"] == "velocity"]
+    found = {}
+    for law in SAME:
+        own = base.merge(table.loc[table["law"] == law, alike])
+        for (cluster, velocity), part in own.groupby(["cluster", "velocity"]):
+            for column in ("X", "N_s"):
+                found[f"same {column} {law} {cluster} {velocity:g}"] = with_error(*mean_and_error(part, column))
+        for cluster, part in own.groupby("cluster"):
+            row = fragmentation_velocity(part)
+            found[f"same v_frag {law} {cluster}"] = with_error(row["velocity"], row["error"], 1)
+    return found
+
+
+def _first_fall(table, thresholds):
+    """``A first velocity``: A [ns] as in `_calibrated` if X had to fall through its limit once, not for the last time.
+
+    ``first v_frag velocity_2.0ns 570nm``: the v_frag [m/s] of that.
+    """
+    first, found = thresholds.copy(), {}
+    central = table[table["impact_parameter"] == 0]
+    for (law, cluster), part in central.groupby(["law", "cluster"]):
+        velocity = crossings(*means(part, "X")[:2], STICKING)
+        row = (first["law"] == law) & (first["cluster"] == cluster) & (first["impact_parameter"] == 0)
+        if len(velocity):
+            first.loc[row, "velocity"] = velocity[0]
+            found[f"first v_frag {law} {cluster}"] = f"{velocity[0]:.1f}"
+    known = _calibrated(first).get("A velocity")
+    return found | ({} if known is None else {"A first velocity": known.split(" ")[0]})
 
 
 def _largest(table):
@@ -246,7 +352,11 @@ def _shorter(table, law, cluster):
 
 
 def _exponents(thresholds):
-    """Powers with which v_frag and v_stick go with the radius, and at 0.57 um with the surface energy; A = 0.5 ns."""
+    """Powers with which v_frag and v_stick go with the radius, and at 0.57 um with the surface energy; A = 0.5 ns.
+
+    The error of that of v_frag is the greater of two: of the errors of its velocities, and of how they lie about the
+    line. v_stick is exact, and no power: the least and greatest slope between neighbours are told.
+    """
     own = of_paper(head_on(thresholds))
     own = own[(own["friction"] == "velocity") & np.isclose(own["damping_time"], 0.5e-9, atol=0.0)]
     own = own.dropna(subset=["velocity", "sticking_velocity"])
@@ -255,9 +365,14 @@ def _exponents(thresholds):
         ("radius", "radius", of_same_energy(own)),
         ("energy", "surface_energy", own[np.isclose(own["radius"], RADII[-1])]),
     ):
-        for word, column in (("", "velocity"), (" stick", "sticking_velocity")):
-            line, cover = np.polyfit(np.log(part[x]), np.log(part[column]), 1, cov=True)
-            found[f"exponent {name}{word}"] = with_error(line[0], np.sqrt(cover[0, 0]))
+        part = part.sort_values(x)
+        at, speed = np.log(part[x].to_numpy()), part["velocity"].to_numpy()
+        (power, _), cover = np.polyfit(at, np.log(speed), 1, cov=True)
+        lever = (at - at.mean()) / np.sum((at - at.mean()) ** 2)
+        known = np.sqrt(np.sum((lever * part["error"].to_numpy() / speed) ** 2))
+        found[f"exponent {name}"] = with_error(power, max(known, np.sqrt(cover[0, 0])))
+        slopes = np.sort(np.diff(np.log(part["sticking_velocity"].to_numpy())) / np.diff(at))
+        found[f"exponent {name} stick"] = f"{slopes[0]:.2f} to {slopes[-1]:.2f}"
     return found
 
 
@@ -294,13 +409,12 @@ def _threshold(row):
     return f"not between {row['slowest']:g} and {row['fastest']:g}"
 
 
-def _alike(row):
-    """Texts of the radius and of the moment that a cluster is like, from 16 to 84 %."""
-    if not np.isfinite(row["radius"]):
-        return "–", "–"
-    beyond = " (end of the range)" if row["at_end"] else ""
-    radius = f"{row['radius'] / NM:.0f} ({row['radius_low'] / NM:.0f}–{row['radius_high'] / NM:.0f}){beyond}"
-    return radius, f"{row['q']:.1f} ({row['q_low']:.1f}–{row['q_high']:.1f}){beyond}"
+def _alike(row, names, factor, digits):
+    """Text of what a cluster is like: best, and from 16 to 84 %, the columns `names` of a row times a factor."""
+    best, low, high = (f"{factor * row[name]:.{digits}f}" for name in names)
+    if best == "nan":
+        return "–"
+    return f"{best} ({low}–{high})" + (" (end of the range)" if row["at_end"] else "")
 
 
 def tables_of(files):

@@ -11,6 +11,7 @@ __all__ = [
     "STICKING",
     "agglomeration",
     "bootstrap_means",
+    "crossings",
     "fragmentation",
     "fragmentation_number",
     "fragmentation_velocity",
@@ -231,12 +232,15 @@ def _checked(table):
     return table
 
 
-def _crossing(velocity, mean, limit):
-    """Where values at ascending velocities fall through a limit for the last time; NaN for nowhere, values or falls."""
+def crossings(velocity, mean, limit):
+    """Where values at ascending velocities fall through a limit, (k,) [m/s]; `velocity` and `mean` are (n,) arrays."""
     velocity, mean = velocity[np.isfinite(mean)], mean[np.isfinite(mean)]
-    falls = np.flatnonzero((mean[:-1] >= limit) & (mean[1:] < limit))
-    if not len(falls):
-        return np.nan
-    k = falls[-1]
+    k = np.flatnonzero((mean[:-1] >= limit) & (mean[1:] < limit))
     part = (mean[k] - limit) / (mean[k] - mean[k + 1])
     return velocity[k] + part * (velocity[k + 1] - velocity[k])
+
+
+def _crossing(velocity, mean, limit):
+    """The last of `crossings`; NaN for none."""
+    falls = crossings(velocity, mean, limit)
+    return falls[-1] if len(falls) else np.nan
