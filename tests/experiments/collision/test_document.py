@@ -147,7 +147,8 @@ def test_exponents_hold_the_errors_of_the_velocities():
         dict(
             law=f"law {energy}", cluster=f"{radius * 1e9:.0f}nm", friction="velocity", damping_time=0.5e-9,
             radius=radius, impact_parameter=0.0, surface_energy=energy, velocity=energy / radius,
-            error=0.1 * energy / radius, sticking_velocity=energy / radius**2 if radius > 3e-7 else 2.0 * energy / radius**2,
+            error=0.1 * energy / radius,
+            sticking_velocity=energy / radius**2 if radius > 3e-7 else 2.0 * energy / radius**2,
         )
         for energy, radius in [(0.025, radius) for radius in radii] + [(0.05, radii[-1]), (0.0125, radii[-1])]
     ]  # fmt: skip

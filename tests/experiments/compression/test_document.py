@@ -187,3 +187,28 @@ def test_parts_without_data_are_left_out():
     with pytest.raises(ratd.InputError, match="an 'if' without an 'end'"):
         fill("<!-- if x -->\n", {"x.n": Measured(1.0)})
     assert Path("docs/compression/data/sets/base.nc").is_file()
+
+
+def test_where_hardly_anything_rolls_the_pressure_does_not_go_with_the_rolling_displacement(values):
+    """Four times xi_c: the same pressure at 0.01, and much more where monomers roll."""
+    for times in ("xi_16", "xi_32"):
+        assert abs(values[f"{times}.pressure_over_0.01"].value - 1.0) < 0.02
+    assert values["xi_32.pressure_over_0.03"].value > 1.4
+    assert values["slow_16384.lost_rolling_0.01"] < 0.15 < 0.4 < values["slow_16384.lost_rolling_0.02"]
+
+
+def test_two_clusters_have_the_scatter_of_many(values):
+    own = values["silicate_16384.ratio_0.1_of_few"]
+    assert own.value == values["silicate_16384.ratio_0.1"].value
+    wanted = own.value * values["n_16384.scatter_0.1"].value / 2**0.5
+    assert abs(own.error / wanted - 1.0) < 1e-12 and own.error > 5 * values["silicate_16384.ratio_0.1"].error
+
+
+def test_a_slow_squeeze_is_said_to_suggest_what_three_clusters_do_not_show(values):
+    """Ten clusters of the usual rate at three quarters of their pressure show it; at more than it they deny it."""
+    assert values["slow_later"] == "suggest"
+    sets, *_ = document.read_data()
+    for times, word in ((0.75, "show"), (1.05, "deny")):
+        slow = sets["n_16384"].assign(pressure=times * sets["n_16384"]["pressure"])
+        chosen = {"base": sets["base"], "n_16384": sets["n_16384"], "slow_16384": slow}
+        assert findings(chosen, None, None)["slow_later"] == word

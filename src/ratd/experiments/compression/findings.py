@@ -1,6 +1,5 @@
 """Every number that docs/compression.md tells, from the tables of the compression."""
 
-import itertools
 import math
 
 import numpy as np
@@ -18,6 +17,7 @@ from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
+from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SMALL, beside, of_pairs, several
 from ratd.experiments.compression.static import (
     box_rate,
     face_speed,
@@ -30,7 +30,6 @@ from ratd.experiments.compression.strength import (
     NEAR,
     along_axes,
     anisotropy_at,
-    compared,
     crosses_line,
     far_slope_of_structure,
     fit_power_law,
@@ -38,7 +37,6 @@ from ratd.experiments.compression.strength import (
     lost_from,
     measured,
     of_means,
-    of_same_clusters,
     overtakes,
     phi_at,
     ratio_at,
@@ -55,33 +53,14 @@ SLIDING = 1e-16
 """Energy [J] lost by sliding in a cluster at which it is said to begin: the least in the printed Fig. 8."""
 AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
 """Filling factors at which numbers are told."""
-LOW_RANGE = (0.01, 0.05)
-"""Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
 """Losses that are compared between long steps and explicit ones."""
 STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
-BY_SIZE = ("n_1024", "base", "n_16384")
-"""Sets that differ in the number of monomers, the fewest first."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
-SMALL = "n_1024"
-"""The set of small clusters that go to high filling factors; damping and rolling displacements are varied there."""
-HIGH = "high_16384"
-"""The set that high filling factors are told of."""
-LOOSE = {
-    "loose_16384": ("n_16384", 0.0055, 0.009),
-    "slow_16384": ("n_16384", 0.0055, 0.009),
-    "short_16384": ("slow_16384", 0.0055, 0.009),
-    "explicit_16384": ("n_16384", 0.008, 0.019),
-}
-"""Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
-SLOWEST = ("slow_16384", "loose_16384")
-"""The slowest squeeze of loose clusters, and the next one."""
-BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
-"""What a set is compared with, by the beginning of its name; all others with the base set."""
 
 
 def of_set(name, table):
@@ -104,6 +83,8 @@ def of_set(name, table):
     # of a cluster over N^(1/2) r_0; the pressure that Sect. 4 of the paper derives goes with its sixth power
     width, spread = (number / math.sqrt(found["N"]) for number in found["gyration"])
     found |= {"width": Measured(width, spread), "width_6": Measured(width**6, 6.0 * width**5 * spread)}
+    # of a sphere with this radius of gyration, whose own radius is sqrt(5/3) of it (Eq. 24)
+    found["width_6_sphere"] = Measured(*((5.0 / 3.0) ** 3 * number for number in found["width_6"]))
     last = float(table["phi"].values[np.isfinite(table["pressure"].values).all(axis=0)].max())
     for phi in [phi for phi in AT if 1.2 * table["phi_start"].values.max() < phi < last]:
         found[f"ratio_{phi:g}"] = measured(ratio_at(table, phi))
@@ -114,15 +95,19 @@ def of_set(name, table):
         found[f"contacts_{phi:g}"] = Measured(*mean_of(contacts[np.isfinite(contacts)]))
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
         found[f"anisotropy_{phi:g}"] = measured(anisotropy_at(table, phi))
-        found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), _several(along_axes(table, phi)), strict=True))
+        found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), several(along_axes(table, phi)), strict=True))
         for way in WAYS:
             found[f"{way}_{phi:g}"] = measured(share_at(table, way, phi))
+        work = np.nanmean(table["work"].values[:, k])
+        for mode in ("rolling", "twisting"):
+            found[f"held_{mode}_{phi:g}"] = float(np.nanmean(table[f"stored_{mode}"].values[:, k]) / work)
+        found[f"lost_rolling_{phi:g}"] = float(np.nanmean(table["dissipated_rolling"].values[:, k]) / work)
         found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
     if last * NEAR > FIT_RANGE[1]:
-        exponent, at, ratio = _several(fit_power_law(table))
+        exponent, at, ratio = several(fit_power_law(table))
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
     if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
-        found["exponent_low"], _, found["ratio_low"] = _several(fit_power_law(table, *LOW_RANGE))
+        found["exponent_low"], _, found["ratio_low"] = several(fit_power_law(table, *LOW_RANGE))
     found["rolling_over_made"] = measured(overtakes(table, "rolling", "made", found["static"]))
     found["rolling_over_damping"] = measured(overtakes(table, "rolling", "damping", found["static"]))
     found["sliding_from"] = measured(lost_from(table, "sliding", SLIDING))
@@ -148,7 +133,7 @@ def of_set(name, table):
 
 def _with_limit(table, high):
     """The fit with a greatest filling factor, and what it and the recalled formula give over P_0 phi^3."""
-    found = dict(zip(("limit_c", "limit_phi"), _several(fit_with_limit(table, high=high)), strict=True))
+    found = dict(zip(("limit_c", "limit_phi"), several(fit_with_limit(table, high=high)), strict=True))
     for phi in AT:
         found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
         fitted = compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value)
@@ -161,16 +146,12 @@ def _solved(pressure, rolling_pressure):
     return float(np.interp(pressure, compressive_strength_tatsuuma2023(phi, rolling_pressure), phi))
 
 
-def _several(fit):
-    return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
-
-
 def of_monomers(equal, tables):
     """P over what each length predicts, geometric mean over the range of the fit, and over that of equal monomers."""
     found = {}
-    reference = _several(fit_power_law(equal))[2]
+    reference = several(fit_power_law(equal))[2]
     for name, table in tables.items():
-        own = _several(fit_power_law(table))[2]
+        own = several(fit_power_law(table))[2]
         predicted = predicted_pressures(table, equal)
         # l^6 goes with the cube of r_g^2, of both
         of_widths = [3.0 * each["mean_square_gyration_error"] / each["mean_square_gyration"] for each in (table, equal)]
@@ -271,56 +252,6 @@ def _mach(name, strain_rate, phi, n=PAPER_N):
     return face / sound
 
 
-def of_pairs(sets):
-    """Each set over the one that it is compared with, of the clusters that both have; and each size over the next."""
-    found = {}
-    for name, table in sets.items():
-        beside = _beside(name)
-        if name == beside or not name.startswith(("k_n", "xi", "rate")) or beside not in sets:
-            continue
-        ratio, steeper = _several(compared(table, sets[beside]))
-        found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
-        found[f"{name}.over_all"] = quotient(*(_several(fit_power_law(each))[2] for each in (table, sets[beside])))
-    for name, (beside, low, high) in LOOSE.items():
-        if {name, beside} <= set(sets):
-            found[f"{name}.paired"] = _several(compared(sets[name], sets[beside], low, high))[0]
-            same = of_same_clusters([sets[name], sets[beside]])[1]
-            for phi in (0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
-                if phi * NEAR < sets[name]["phi"].values[-1]:
-                    found[f"{name}.beside_{phi:g}"] = measured(ratio_at(same, phi))
-                    # looser ones have bins without pressure
-                    if phi < 0.005:
-                        continue
-                    ratio = compared(sets[name], sets[beside], phi / NEAR, phi * NEAR)
-                    found[f"{name}.over_{phi:g}"] = _several(ratio)[0]
-            if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
-                found[f"{name}.steeper_low"] = _several(compared(sets[name], sets[beside], *LOW_RANGE))[1]
-    if set(SLOWEST) <= set(sets):
-        for phi in (0.005, 0.01, 0.02, 0.03):
-            ratio = compared(*(sets[name] for name in SLOWEST), phi / NEAR, phi * NEAR)
-            found[f"{SLOWEST[0]}.over_next_{phi:g}"] = _several(ratio)[0]
-    for name, larger in itertools.pairwise(BY_SIZE):
-        if {name, larger} <= set(sets):
-            found |= _by_size(sets, name, larger, (0.01, 0.02, 0.03, 0.05))
-    if {SMALL, HIGH} <= set(sets):
-        found |= _by_size(sets, SMALL, HIGH, (0.2, 0.3, 0.48), "paper_size")
-    return found
-
-
-def _by_size(sets, name, larger, every, word="larger"):
-    """Pressures of a set over those of one of larger clusters."""
-    found = {}
-    for phi in every:
-        own, other = (measured(ratio_at(sets[each], phi)) for each in (name, larger))
-        found[f"{name}.over_{word}_{phi:g}"] = quotient(own, other)
-    return found
-
-
-def _beside(name):
-    """The set that one is compared with."""
-    return next((other for start, other in BESIDE.items() if name.startswith(start)), "base")
-
-
 def _near(table, phi):
     """Pressures of single clusters near a filling factor, (seeds,)."""
     k = _bin_at(table, phi)
@@ -346,16 +277,20 @@ def verdicts(values, sets):
         if f"{name}.rolling_{phi:g}" in values:
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
     for name in sets:
-        beside = _beside(name)
-        if name != beside and {f"{name}.ratio", f"{beside}.ratio"} <= set(values):
-            found[f"{name}.same"] = "agrees" if _same(values, name, beside) else "differs"
+        other = beside(name)
+        if name != other and {f"{name}.ratio", f"{other}.ratio"} <= set(values):
+            found[f"{name}.same"] = "agrees" if _same(values, name, other) else "differs"
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
     if "slow_16384.over_0.03" in values:
         late = values["slow_16384.over_0.03"]
-        early = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.02)]
-        found["slow_early"] = "less" if all(own.value + 2.0 * own.error < 1.0 for own in early) else "as much"
+        early, *later = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.01, 0.02)]
+        found["slow_early"] = "less" if early.value + 2.0 * early.error < 1.0 else "as much"
+        less = all(own.value < 1.0 for own in later)
+        beside_all = [values[f"slow_16384.over_all_{phi}"] for phi in (0.01, 0.02)]
+        sure = all(own.value + 2.0 * own.error < 1.0 for own in (*later, *beside_all))
+        found["slow_later"] = "show" if sure else "suggest" if less else "deny"
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
@@ -376,6 +311,10 @@ def verdicts(values, sets):
     slow = [values[f"rate_{rate}.paired"].value for rate in ("1e-7", "1e-6", "3e-6") if f"rate_{rate}.paired" in values]
     if slow:
         found["rates"] = "a tenth" if max(abs(ratio - 1.0) for ratio in slow) < 0.15 else "more"
+    at_02 = [f"{name}.ratio_0.2" for name in ("xi_32", HIGH, "xi_2", "silicate_16384")]
+    if set(at_02) <= set(values):
+        much, some, *little = (values[name].value for name in at_02)
+        found["twisting_0.2"] = "the more" if much < some < min(little) else "no more"
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
