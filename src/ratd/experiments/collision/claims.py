@@ -9,7 +9,7 @@ import numpy as np
 
 from ratd.base.units import NM
 from ratd.experiments.collision.likeness import is_equal
-from ratd.experiments.collision.fragmentation import fragmentation_velocity, mean_and_error
+from ratd.experiments.collision.fragmentation import fragmentation_velocities, mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper
 
@@ -78,9 +78,7 @@ class _Found:
     def by_sample(self, law, cluster):
         """Fragmentation velocity [m/s] of each sample, (k,) array."""
         own = self.table[(self.table["law"] == law) & (self.table["cluster"] == cluster)]
-        central = own[own["impact_parameter"] == 0.0]
-        each = central.groupby("sample")[["velocity", "X"]]
-        return np.array([fragmentation_velocity(part, samples=2)["velocity"] for _, part in each])
+        return fragmentation_velocities(own[own["impact_parameter"] == 0.0])
 
     def alike(self, law, quantity, cluster="mrn"):
         """Radius [m] of the equal spheres that a cluster is like."""

@@ -8,15 +8,15 @@ from ratd.base.materials import MATERIALS
 from ratd.base.measured import quotient
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
-from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.fragmentation import (
     STICKING,
     crossings,
+    fragmentation_velocities,
     fragmentation_velocity,
     mean_and_error,
     means,
 )
-from ratd.experiments.collision.likeness import likeness_table
+from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
 from ratd.laws.dmt_with_friction import PERIOD_PARTS, dmt
@@ -35,6 +35,8 @@ NEAR_CEILING = 0.85
 """Part of what N_s cannot exceed from which on it says more of the largest sphere than of fragmentation."""
 SMALLEST_OF = {"mrn": SMALLEST, "mrn100": 100 * NM}
 """Least radius [m] of clusters of the MRN law, up to 2.5 um all."""
+LENGTHS = ("radius", "radius_low", "radius_high")
+"""Columns of the radius that a cluster is like, and of its range."""
 SAME = ("longer", "half_step")
 """Laws under which some of the collisions of the law "velocity" were done once more."""
 
@@ -84,11 +86,9 @@ def values(table, thresholds, likeness):
         found[f"energy {key}"] = f"{row['energy_per_contact']:.2g} ± {relative:.0%}" if is_close(row) else "–"
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
-        found[f"radius {key}"] = _alike(row, ("radius", "radius_low", "radius_high"), 1.0 / NM, 0)
+        found[f"radius {key}"] = _radius(row)
         if row["cluster"] in SMALLEST_OF:
-            lengths = (row[name] for name in ("radius", "radius_low", "radius_high"))
-            own = dict(zip("abc", (moment_of_length(one, SMALLEST_OF[row["cluster"]]) for one in lengths), strict=True))
-            found[f"q {key}"] = _alike(own | {"at_end": row["at_end"]}, "abc", 1.0, 1)
+            found[f"q {key}"] = _moment(row, SMALLEST_OF[row["cluster"]])
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
     found |= _by_sample(table, "velocity", "mrn") | _shorter(table, "velocity", "mrn")
@@ -230,10 +230,7 @@ def _by_v_frag(table, thresholds):
         low, high = np.quantile(drawn, [0.16, 0.84])
         found["radius velocity mrn v_frag"] = f"{radius(true, speed):.0f} ({low:.0f}–{high:.0f})"
     for name in ("mrn", "353nm"):
-        each = [
-            fragmentation_velocity(part, samples=2)["velocity"]
-            for _, part in central[central["cluster"] == name].groupby("sample")
-        ]
+        each = fragmentation_velocities(central[central["cluster"] == name])
         found[f"by sample v_frag velocity {name}"] = ", ".join(f"{velocity:.1f}" for velocity in each)
     return found
 
@@ -255,7 +252,7 @@ def _below_ceiling(table):
         below = [velocity for velocity, share in part.items() if share < NEAR_CEILING]
         rows = likeness_table(own[((own["cluster"] == "mrn") | is_equal(own)) & own["velocity"].isin(below)])
         for _, row in rows[(rows["cluster"] == "mrn") & (rows["quantity"] == "N_s")].iterrows():
-            found[f"radius below {law} N_s"] = _alike(row, ("radius", "radius_low", "radius_high"), 1.0 / NM, 0)
+            found[f"radius below {law} N_s"] = _radius(row)
     return found
 
 
@@ -409,12 +406,22 @@ def _threshold(row):
     return f"not between {row['slowest']:g} and {row['fastest']:g}"
 
 
-def _alike(row, names, factor, digits):
-    """Text of what a cluster is like: best, and from 16 to 84 %, the columns `names` of a row times a factor."""
-    best, low, high = (f"{factor * row[name]:.{digits}f}" for name in names)
-    if best == "nan":
+def _radius(row):
+    """Text of the radius [nm] that a cluster is like, and from 16 to 84 %."""
+    return _alike([row[name] / NM for name in LENGTHS], row["at_end"], 0)
+
+
+def _moment(row, smallest):
+    """Text of the moment q of the law from `smallest` [m] on that has this radius."""
+    return _alike([moment_of_length(row[name], smallest) for name in LENGTHS], row["at_end"], 1)
+
+
+def _alike(numbers, at_end, digits):
+    """Text of the best number and of its ends, 16 and 84 %."""
+    if not np.isfinite(numbers[0]):
         return "–"
-    return f"{best} ({low}–{high})" + (" (end of the range)" if row["at_end"] else "")
+    best, low, high = (f"{number:.{digits}f}" for number in numbers)
+    return f"{best} ({low}–{high})" + (" (end of the range)" if at_end else "")
 
 
 def tables_of(files):

@@ -14,6 +14,7 @@ __all__ = [
     "crossings",
     "fragmentation",
     "fragmentation_number",
+    "fragmentation_velocities",
     "fragmentation_velocity",
     "mean_and_error",
     "means",
@@ -135,6 +136,13 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
     values = {"velocity": middle, "error": np.std(spread, ddof=1), "low": low, "high": high, "found": there.mean()}
     return pd.Series(values | ends)
+
+
+def fragmentation_velocities(table):
+    """`fragmentation_velocity` [m/s] of each sample of a table on its own, (k,) array."""
+    each = table.groupby("sample")[["velocity", "X"]]
+    # the least bootstrap: its errors are not told
+    return np.array([fragmentation_velocity(part, samples=2)["velocity"] for _, part in each])
 
 
 def mean_and_error(part, column):

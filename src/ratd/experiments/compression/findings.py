@@ -17,7 +17,7 @@ from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
-from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SMALL, beside, of_pairs, several
+from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SMALL, beside, of_pairs
 from ratd.experiments.compression.static import (
     box_rate,
     face_speed,
@@ -41,6 +41,7 @@ from ratd.experiments.compression.strength import (
     phi_at,
     ratio_at,
     scatter_at,
+    several,
     share_at,
     slope_of_structure,
 )

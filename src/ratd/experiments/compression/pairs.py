@@ -12,9 +12,10 @@ from ratd.experiments.compression.strength import (
     of_same_clusters,
     ratio_at,
     scatter_at,
+    several,
 )
 
-__all__ = ["BY_SIZE", "HIGH", "LOW_RANGE", "SMALL", "beside", "of_pairs", "several"]
+__all__ = ["BY_SIZE", "HIGH", "LOW_RANGE", "SMALL", "beside", "of_pairs"]
 
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
@@ -53,16 +54,16 @@ def of_pairs(sets):
         found[f"{name}.over_all"] = quotient(*(several(fit_power_law(each))[2] for each in (table, sets[other])))
         if name.startswith("xi"):
             times = table["rolling_pressure"].values[0] / sets[other]["rolling_pressure"].values[0]
-            for phi in (0.01, 0.015, 0.02, 0.03):
-                found[f"{name}.pressure_over_{phi:g}"] = Measured(*(times * n for n in _near(table, sets[other], phi)))
+            for phi in (0.01, 0.02, 0.03):
+                over = _of_same(table, sets[other], phi)
+                found[f"{name}.pressure_over_{phi:g}"] = Measured(times * over.value, times * over.error)
         if name.startswith("rate"):
             for phi in (0.03, 0.05):
-                found[f"{name}.over_{phi:g}"] = _near(table, sets[other], phi)
-                all_of_both = (measured(ratio_at(one, phi)) for one in (table, sets[other]))
-                found[f"{name}.over_all_{phi:g}"] = quotient(*all_of_both)
+                found[f"{name}.over_{phi:g}"] = _of_same(table, sets[other], phi)
+                found[f"{name}.over_all_{phi:g}"] = _of_all(table, sets[other], phi)
     for name, (other, low, high) in LOOSE.items():
         if {name, other} <= set(sets):
-            found[f"{name}.paired"] = several(compared(sets[name], sets[other], low, high))[0]
+            found[f"{name}.paired"] = measured(compared(sets[name], sets[other], low, high))
             same = of_same_clusters([sets[name], sets[other]])[1]
             for phi in (0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
                 if phi * NEAR < sets[name]["phi"].values[-1]:
@@ -70,23 +71,21 @@ def of_pairs(sets):
                     # looser ones have bins without pressure
                     if phi < 0.005:
                         continue
-                    found[f"{name}.over_{phi:g}"] = _near(sets[name], sets[other], phi)
-                    all_of_both = (measured(ratio_at(sets[one], phi)) for one in (name, other))
-                    found[f"{name}.over_all_{phi:g}"] = quotient(*all_of_both)
+                    found[f"{name}.over_{phi:g}"] = _of_same(sets[name], sets[other], phi)
+                    found[f"{name}.over_all_{phi:g}"] = _of_all(sets[name], sets[other], phi)
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
                 found[f"{name}.steeper_low"] = several(compared(sets[name], sets[other], *LOW_RANGE))[1]
     if set(SLOWEST) <= set(sets):
         for phi in (0.005, 0.01, 0.02, 0.03):
-            found[f"{SLOWEST[0]}.over_next_{phi:g}"] = _near(*(sets[name] for name in SLOWEST), phi)
+            found[f"{SLOWEST[0]}.over_next_{phi:g}"] = _of_same(*(sets[name] for name in SLOWEST), phi)
     for name, larger in itertools.pairwise(BY_SIZE):
         if {name, larger} <= set(sets):
             found |= _by_size(sets, name, larger, (0.01, 0.02, 0.03, 0.05))
     if {SMALL, HIGH} <= set(sets):
         found |= _by_size(sets, SMALL, HIGH, (0.2, 0.3, 0.48), "paper_size")
-    for name, larger in itertools.product(("base", SMALL), SLOWEST):
-        if {name, larger} <= set(sets):
-            at = (0.005, 0.01, 0.02) if name == "base" else (0.01, 0.02)
-            found |= _by_size(sets, name, larger, at, larger)
+    for name in ("base", SMALL):
+        if {name, SLOWEST[0]} <= set(sets):
+            found |= _by_size(sets, name, SLOWEST[0], (0.01, 0.02), SLOWEST[0])
     return found | _dense(sets) | _of_few(sets)
 
 
@@ -95,9 +94,8 @@ def _dense(sets):
     found = {}
     for name in DENSE:
         if {name, SMALL} <= set(sets):
-            for phi in (0.3, 0.48):
-                found[f"{name}.dense_{phi:g}"] = _near(sets[name], sets[SMALL], phi)
-            found[f"{name}.dense"] = several(compared(sets[name], sets[SMALL], 0.25, 0.36))[0]
+            found[f"{name}.dense"] = measured(compared(sets[name], sets[SMALL], 0.25, 0.36))
+            found[f"{name}.dense_0.48"] = _of_same(sets[name], sets[SMALL], 0.48)
     return found
 
 
@@ -113,23 +111,19 @@ def _of_few(sets):
     return found
 
 
-def _near(table, other, phi):
-    """Pressure of a set over that of another near a filling factor, over P_0 of each, of the clusters of both."""
-    return several(compared(table, other, phi / NEAR, phi * NEAR))[0]
+def _of_same(table, other, phi):
+    """P/(P_0 phi^3) of a set over that of another at a filling factor, of the clusters that both have, `Measured`."""
+    return measured(compared(table, other, phi / NEAR, phi * NEAR))
 
 
-def several(fit):
-    """The numbers of a fit, list of `Measured`."""
-    return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
+def _of_all(table, other, phi):
+    """The same of all clusters of each, as if those of one were others than those of the other."""
+    return quotient(*(measured(ratio_at(each, phi)) for each in (table, other)))
 
 
 def _by_size(sets, name, larger, every, word="larger"):
     """Pressures of a set over those of one of larger clusters."""
-    found = {}
-    for phi in every:
-        own, other = (measured(ratio_at(sets[each], phi)) for each in (name, larger))
-        found[f"{name}.over_{word}_{phi:g}"] = quotient(own, other)
-    return found
+    return {f"{name}.over_{word}_{phi:g}": _of_all(sets[name], sets[larger], phi) for phi in every}
 
 
 def beside(name):

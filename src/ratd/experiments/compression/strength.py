@@ -65,7 +65,12 @@ class Fit(NamedTuple):
 
 def measured(fit):
     """The first number of a `Fit` with its error."""
-    return Measured(float(fit.value[0]), float(fit.error[0]))
+    return several(fit)[0]
+
+
+def several(fit):
+    """The numbers of a `Fit` with their errors, list of `Measured`."""
+    return [Measured(float(value), float(error)) for value, error in zip(fit.value, fit.error, strict=True)]
 
 
 def of_means(pressure, fit):
