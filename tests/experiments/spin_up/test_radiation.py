@@ -25,6 +25,7 @@ from ratd.experiments.spin_up.radiation import (
     grain_temperature,
     infrared_coefficient,
     infrared_damping,
+    infrared_of,
     moment_of_inertia,
     omega_rat,
     radiative_torque,
@@ -89,6 +90,8 @@ def test_infrared_damping_as_printed_and_from_absorption():
     assert infrared_damping(2e-7, 8.0) == pytest.approx(0.4 * 4.0 / 2.0)
     assert infrared_coefficient(0.8, 22.3) == pytest.approx(0.4, rel=0.15)
     assert 0.4 / infrared_coefficient(0.18, 16.4) == pytest.approx(2.2, abs=0.1)
+    assert infrared_of("q-S") == infrared_of("co-S") == infrared_coefficient(0.18, 16.4)
+    assert infrared_of("a-C") == infrared_of("my own dust") == 0.4
 
 
 def test_dust_is_as_warm_as_sheds_what_it_takes():
@@ -251,6 +254,21 @@ def test_error_follows_from_those_of_the_means():
     assert row["share"] == 1.0
 
 
+def test_silicates_shed_less_infrared_light_than_carbon(table):
+    """The same angular velocities are reached by smaller grains of quartz, unless both shed as much."""
+    same = table[table["material"] == "q-S"]
+    both = pd.concat([same, same.assign(material="a-C")], ignore_index=True)
+
+    def sizes(**how):
+        found = surviving(both, both, [1e4], draws=0, **how).query("law == 'ours'")
+        return (found.loc[found["material"] == name, "a_disr"].to_numpy() for name in ("q-S", "a-C"))
+
+    quartz, carbon = sizes()
+    assert (quartz < 0.95 * carbon).all()
+    quartz, carbon = sizes(coefficient=0.3)
+    assert (quartz == carbon).all()
+
+
 def test_a_material_that_the_paper_does_not_have():
     made = make_table(materials=["ice"], types=["BAM2"])
     assert set(surviving(made, made, [1e4], draws=10)["law"]) == {"ours"}
@@ -274,9 +292,10 @@ def test_limits_fill_a_document(table):
 def test_what_moves_the_size_for_one_material_and_strength(table):
     table = table.assign(omega_first_loss=0.9 * table["omega_mass_75"])
     values = of_radiation(table, table, strengths=(1e4,), shown=("q-S", 1e4), draws=20)
-    size = {name: values[f"radiation.q-S BAM2 10000 ours{name}"].value for name in ("", " first", " DMT", " one star")}
-    # what holds to a greater omega survives at a greater size, and light from one side turns faster
-    assert size[" one star"] < size[" first"] < size[""] < size[" DMT"]
+    names = ("", " first", " DMT", " one star", " graphite")
+    size = {name: values[f"radiation.q-S BAM2 10000 ours{name}"].value for name in names}
+    # what holds to a greater omega survives at a greater size, light from one side turns faster, graphite is braked more
+    assert size[" one star"] < size[" first"] < size[""] < min(size[" DMT"], size[" graphite"])
     assert values["radiation.q-S BAM2 10000 printed first"].value == values["radiation.q-S BAM2 10000 printed"].value
     assert "radiation.a-C BAM2 10000 ours DMT" not in values
 

@@ -27,6 +27,7 @@ __all__ = [
     "grain_temperature",
     "infrared_coefficient",
     "infrared_damping",
+    "infrared_of",
     "moment_of_inertia",
     "omega_rat",
     "radiative_torque",
@@ -38,9 +39,13 @@ ISRF = 8.64e-14
 """Energy density of starlight near the sun [J m-3] (Mathis, Mezger & Panagia 1983), U = 1."""
 INFRARED = 0.4
 """F_IR of a grain of 0.1 um at U = 1, n_H = 30 cm-3, T = 100 K, as printed (after Draine & Lazarian 1998). An input:
-it depends on how the grain absorbs, see `infrared_coefficient`."""
+it depends on how the grain absorbs, see `infrared_coefficient`; near that of graphite."""
+SILICATE_ABSORPTION = 0.18
+"""Q_abs of a grain of silicate of 0.1 um, averaged over starlight (Draine 2011, Physics of the ISM, Sect. 24.1)."""
 SILICATE_TEMPERATURE = 16.4
-"""Of a grain of silicate of 0.1 um at U = 1 [K] (Draine 2011, Physics of the ISM, Sect. 24.1)."""
+"""Of a grain of silicate of 0.1 um at U = 1 [K], from the same place."""
+SILICATES = ("q-S", "co-S")
+"""Materials that absorb and glow as silicate; the others do as graphite here."""
 SEARCHED = (10e-9, 10e-6)
 """Sizes [m] among which those that are destroyed are sought: from the smallest monomer on."""
 _HELIUM = 1.2
@@ -209,7 +214,7 @@ def infrared_coefficient(absorption, dust_temperature):
     -------
     float
         With the values of Draine (2011, Physics of the ISM, Sect. 24.1) 0.44 for graphite (0.8, 22.3 K), and 0.18 for
-        silicate (0.18, `SILICATE_TEMPERATURE`). The printed 0.4 is 0.9 and 2.2 times that.
+        silicate (`SILICATE_ABSORPTION`, `SILICATE_TEMPERATURE`). The printed 0.4 is 0.9 and 2.2 times that.
 
     Notes
     -----
@@ -221,6 +226,14 @@ def infrared_coefficient(absorption, dust_temperature):
     power = math.pi * size**2 * absorption * speed_of_light * ISRF
     spectrum = 10.5 / (20.0 * math.pi**2) * (Planck / (Boltzmann * dust_temperature)) ** 2
     return float(power / (2.0 * math.pi**2) * spectrum / gas_drag(size))
+
+
+def infrared_of(material):
+    """F_IR of a material by its name, at 0.1 um, U = 1, n_H = 30 cm-3, T = 100 K.
+
+    `infrared_coefficient` of silicate for `SILICATES`, and the printed `INFRARED`, near that of graphite, for others.
+    """
+    return infrared_coefficient(SILICATE_ABSORPTION, SILICATE_TEMPERATURE) if material in SILICATES else INFRARED
 
 
 def omega_rat(size, strength, around=DIFFUSE, inertia_ratio=1.0, coefficient=INFRARED):

@@ -8,7 +8,7 @@ from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import as_frame, size_key
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, destroyed_sizes
+from ratd.experiments.spin_up.radiation import DIFFUSE, destroyed_sizes, infrared_of
 
 __all__ = ["COMPUTED", "grown_inertia", "is_extrapolated", "measured_law", "printed_law", "surviving"]
 
@@ -148,7 +148,7 @@ def surviving(
     *,
     around=DIFFUSE,
     porous=False,
-    coefficient=INFRARED,
+    coefficient=None,
     materials=None,
     draws=400,
     seed=0,
@@ -169,8 +169,8 @@ def surviving(
     porous : bool
         Whether gas hits all of the porous grain (`radiation.gas_drag`), or as much of it as of a solid sphere of its
         mass. The torque is that of a_eff in both.
-    coefficient : float
-        See `radiation.infrared_damping`.
+    coefficient : float, optional
+        See `radiation.infrared_damping`; that of each material when not given, `radiation.infrared_of`.
     materials : optional
         Table of materials, handed to `ratd.base.materials.get_material`.
     draws, seed : int
@@ -197,11 +197,12 @@ def surviving(
         material = get_material(name, materials)
         for kind in dict.fromkeys(table.loc[table["material"] == name, "type"]):
             ratio = grown_inertia(grown, name, kind) if porous else None
+            infrared = infrared_of(name) if coefficient is None else coefficient
             candidates = {"ours": measured_law(table, mark, name, kind, draws, rng)}
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
             for which, (omega, spread) in candidates.items():
-                found = _sizes(omega, spread, strengths, around, ratio, coefficient)
+                found = _sizes(omega, spread, strengths, around, ratio, infrared)
                 rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
 

@@ -16,7 +16,7 @@ from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import effect
 from ratd.experiments.spin_up.printed import PAIR_ERROR, VISCOUS_EFFECT
-from ratd.experiments.spin_up.radiation import grain_temperature, spin_up_time
+from ratd.experiments.spin_up.radiation import grain_temperature, infrared_of, spin_up_time
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
 from ratd.laws.contact_constants import equilibrium_contact_radius
@@ -178,7 +178,8 @@ def of_heat(size, strength=100.0):
         light``, beside an hour.
     strength : float
     """
-    time = spin_up_time(size, get_material("q-S").density, strength)
+    quartz = get_material("q-S")
+    time = spin_up_time(size, quartz.density, strength, coefficient=infrared_of(quartz.name))
     values = {"thermal.years": time / Julian_year, "thermal.grain": grain_temperature(strength)}
     for word, duration in (("", thermal.HOUR), ("light ", time)):
         for row in thermal.table(("q-S",), duration=duration).to_dict("records"):

@@ -7,13 +7,11 @@ import numpy as np
 from ratd.base.measured import Measured
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES
-from ratd.experiments.spin_up.radiation import DIFFUSE, SILICATE_TEMPERATURE, infrared_coefficient
+from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED
 from ratd.experiments.spin_up.surviving import COMPUTED, surviving
 
 __all__ = ["NONE", "of_radiation"]
 
-SILICATE = infrared_coefficient(0.18, SILICATE_TEMPERATURE)
-"""F_IR of silicate, where the printed 0.4 is near that of graphite."""
 SURROUNDINGS = {
     "one star": DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6),
     "directed": DIFFUSE._replace(anisotropy=0.7),
@@ -50,14 +48,14 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     dict
         "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
         same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
-        " cool", where the grain sheds infrared light as silicate does (`SILICATE`). With " greatest" behind it the
+        " graphite", where the grain sheds infrared light as graphite does (`INFRARED`). With " greatest" behind it the
         largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
         drags. With "over" for "ours" ours over the printed one. "radiation.most error" is the greatest relative
         error of ours for the material of `shown`. For `shown` also, without errors, with " first" the first loss in
         place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
     """
     values = {}
-    for behind, how in (("", {}), (" porous", {"porous": True}), (" cool", {"coefficient": SILICATE})):
+    for behind, how in (("", {}), (" porous", {"porous": True}), (" graphite", {"coefficient": INFRARED})):
         values |= _sizes(table, grown, strengths, behind, mark=mark, **how, **options)
     for key in [key for key in values if key.endswith((" ours", " printed"))]:
         ends = [_text(values[key + behind]) for behind in ("", " porous")]
