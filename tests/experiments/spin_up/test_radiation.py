@@ -294,7 +294,7 @@ def test_what_moves_the_size_for_one_material_and_strength(table):
     values = of_radiation(table, table, strengths=(1e4,), shown=("q-S", 1e4), draws=20)
     names = ("", " first", " DMT", " one star", " graphite")
     size = {name: values[f"radiation.q-S BAM2 10000 ours{name}"].value for name in names}
-    # what holds to a greater omega survives at a greater size, light from one side turns faster, graphite is braked more
+    # what holds more survives at a greater size, light from one side turns faster, graphite is braked more
     assert size[" one star"] < size[" first"] < size[""] < min(size[" DMT"], size[" graphite"])
     assert values["radiation.q-S BAM2 10000 printed first"].value == values["radiation.q-S BAM2 10000 printed"].value
     assert "radiation.a-C BAM2 10000 ours DMT" not in values
