@@ -11,6 +11,7 @@ from ratd.experiments.spin_up.figures.fragments import cumulative, fragments, sh
 from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import over_the_paper, overview
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
+from ratd.experiments.spin_up.findings.law import of_curve
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
 from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS
@@ -105,6 +106,18 @@ def test_law_draws_the_curve_that_made_the_grains():
         (curve,) = [line for line in strip.get_lines() if len(line.get_xdata()) == 60]
         np.testing.assert_allclose(np.interp(sizes * 1e9, *curve.get_data()), points, rtol=2e-3)
     assert len({strip.get_ylim() for strip in strips}) == 1
+
+
+def test_q_is_told_of_larger_grains_too():
+    """The means of 50 nm are off the curve of the others."""
+    table = make_table(seeds=3).assign(nm=lambda own: own["a_eff"] * 1e9, n_contacts=100.0)
+    x = np.log(table["a_eff"] / SPLIT)
+    small = table["nm"].round() == table["nm"].round().min()
+    omega = 0.5 * size_law_unit(table) * np.exp(-1.5 * x + 0.2 * x**2) * np.where(small, 0.7, 1.0)
+    values = of_curve(table.assign(omega_mass_75=omega), table)
+    assert values["curve.BA q from 100"].value == pytest.approx(-0.2)
+    assert values["curve.BA q from 150"].value == pytest.approx(-0.2)
+    assert values["curve.BA q"].value > -0.15
 
 
 def test_law_needs_three_sizes():

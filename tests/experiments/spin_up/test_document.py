@@ -17,10 +17,11 @@ from ratd.experiments.spin_up.findings.beside import (
     of_heat,
     of_lammps,
     of_pairs,
+    of_printed_pace,
     of_ways,
     recomputed,
 )
-from ratd.experiments.spin_up.findings.claims import all_of, claims, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings.claims import all_of, claims, grown_claims, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
 from ratd.pictures.style import save
 
@@ -124,6 +125,22 @@ def test_pairs_are_within_the_printed_error_undamped_and_not_damped():
     assert values["pairs.damped error"] == pytest.approx(0.0016 / 1.3416, rel=1e-6)
 
 
+def test_the_printed_pace_is_beside_the_tuned_one():
+    """Far below the threshold over q a fourth root, far above it q times a number (see `solid_omega`)."""
+    table = grains(lambda kind, nm: 3e7, sizes=(350,)).assign(spin_share=1e-9, timestep=2e-12)
+    found = of_printed_pace(table, table, 1.25e14, 0.125)
+    step = 2e-12 * 0.02 / 0.125
+    assert found["pace.tuned"] == pytest.approx(2e13) and found["pace.step"] == pytest.approx(1e12 * step)
+    assert found["pace.omega tuned"] == pytest.approx((4 * 3e7 * 2e13 / step) ** 0.25, rel=0.05)
+    assert found["pace.omega hours"] == pytest.approx(1.515 * (3e10 / 3600 / step) ** (1 / 3), rel=0.05)
+    assert found["pace.least"] == pytest.approx(1.515 * (3e10 / 10800 / step) ** (1 / 3), rel=0.05)
+    far = of_printed_pace(table.assign(omega_first_loss=1e12), table, 1.25e14, 0.125)
+    assert far["pace.omega hours"] == pytest.approx(1.515 * (3e10 / 3600 / step) ** (1 / 3), rel=1e-3)
+    assert found["pace.short"] == pytest.approx(3e8 / found["pace.omega hours"])
+    assert (found["pace.holds"], found["pace.holds driven"]) == ("no", "no")
+    assert of_printed_pace(table.assign(omega_first_loss=3e8), table, 1e14, 0.02)["pace.holds driven"] == "yes"
+
+
 def test_grains_that_were_computed_anew_are_compared_with_themselves():
     older = grains(lambda kind, nm: 1e8)
     newer = grains(lambda kind, nm: 1.01e8, sizes=(300,))
@@ -181,6 +198,24 @@ def test_shapes_are_judged_by_what_grains_change(data):
     assert long["d.oblate BAM disr"].value == 0.0
 
 
+def test_the_last_contact_is_beside_the_first_loss(data):
+    own = data.driven["omega_first_loss"]
+    assert told(data, omega_end=10.0 * own)["d.holds to the last"] == "yes"
+    late = told(data, omega_end=30.0 * own)
+    assert late["d.holds to the last"] == "no" and late["d.to the last"].value == pytest.approx(30.0)
+
+
+def test_grains_as_grown_are_judged_at_all_sizes_and_at_those_of_figure_6(data):
+    half = np.arange(len(data.grown)) % 2 == 0
+    axes = {"axis_a": 1.0, "axis_b": np.where(half, 1.9, 1.1), "axis_c": 2.0}
+    even = grown_claims(data.grown.assign(**axes))
+    assert (even["g.holds oblate"], even["g.holds oblate figure 6"]) == ("yes", "yes")
+    shown = data.grown["nm"].round().isin((200, 350, 500))
+    flat = grown_claims(data.grown.assign(**axes | {"axis_b": np.where(half | shown, 1.9, 1.1)}))
+    assert flat["g.oblate figure 6"].value == 100.0 and flat["g.holds oblate figure 6"] == "no"
+    assert 50.0 < flat["g.oblate"].value < 80.0
+
+
 def test_a_quarter_is_at_omega_disr_by_the_median_of_a_type(data):
     near = data.driven["omega_mass_75"] * np.where(data.driven["type"] == "BA", 1.5, 1.1)
     found = told(data, omega_disr=near)
@@ -206,6 +241,8 @@ def test_the_rolling_limit_is_judged_at_all_its_values(data):
     found = of_ways(table.assign(omega_disr_ratio=moved))
     assert found["ways.holds xi"] == "no" and found["ways.BAM2 xi"].value == pytest.approx(0.8)
     assert found["ways.holds viscous"] == "no"
+    rolls = np.where(np.isclose(table["critical_rolling_displacement"], 3.2e-9, atol=0.0), 1.3, 1.0)
+    assert of_ways(table.assign(omega_mass_75_ratio=rolls))["ways.BA xi quarter"].value == pytest.approx(1.3)
 
 
 def test_grains_in_strong_light_are_beside_the_heat_that_parts_contacts():

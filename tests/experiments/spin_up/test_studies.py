@@ -139,6 +139,14 @@ def test_scaling_by_a_mean_radius(values):
     assert values["second_reading.all omega_disr"].value == pytest.approx(1.05, abs=0.03)
 
 
+def test_equal_monomers_are_more_porous_where_all_types_are(tables):
+    loose = {name: tables[name].assign(filling_factor=0.2) for name in ("equal_30nm", "equal_41nm")}
+    loose = {name: table.assign(filling_factor=0.2 + 0.001 * (table["seed"] % 2)) for name, table in loose.items()}
+    assert of_studies(tables | loose)["equal.holds compact"] == "yes"
+    one = loose["equal_41nm"].assign(filling_factor=np.where(loose["equal_41nm"]["type"] == "BAM2", 0.4, 0.2))
+    assert of_studies(tables | loose | {"equal_41nm": one})["equal.holds compact"] == "no"
+
+
 def test_a_law_of_the_ensemble_holds_for_equal_monomers_with_the_right_mean_radius(values):
     for mark in MARKS:
         for kind in TYPES:

@@ -238,8 +238,10 @@ def findings(data, fits):
     values |= beside.composition_tables()
     values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)
     printed = load(*CONFIGS).config["literal"]
-    values |= {"p.acceleration": printed["angular_acceleration"], "p.step": printed["timestep_factor"]}
-    values |= beside.of_printed_pairs(printed["angular_acceleration"], printed["timestep_factor"])
+    pace = printed["angular_acceleration"], printed["timestep_factor"]
+    values |= {"p.acceleration": pace[0], "p.step": pace[1]}
+    values |= beside.of_printed_pairs(*pace)
+    values |= beside.of_printed_pace(data.driven, data.printed, *pace)
     values |= beside.of_lammps(**data.lammps)
     values |= of_studies(data.studies) | of_literature(data.driven, data.grown)
     values |= of_exponents(data.fragments[DRIVEN])

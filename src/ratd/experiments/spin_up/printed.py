@@ -13,6 +13,7 @@ __all__ = [
     "PAPER_MEAN_RADIUS",
     "PRINTED_1",
     "PRINTED_2",
+    "SPIN_UP",
     "TABLE_3",
     "TABLE_3_SOURCE",
     "VISCOUS_EFFECT",
@@ -63,6 +64,9 @@ PAIR_ERROR = 0.018
 
 FIRST_LOSS = (("q-S", "BAM2", 350e-9), 3e8)
 """Material, type, a_eff [m] of the grains of Fig. 4, and omega [rad s-1] up to which their mass stays (Sect. 7.1)."""
+
+SPIN_UP = (3e10, 3600.0)
+"""omega [rad s-1] towards which grains are turned, and the shortest time [s] that "hours" (Sect. 6) can mean for it."""
 
 VISCOUS_EFFECT = (9e-12, 1.11)
 """T_vis [s], and omega_disr with it over that at 5 ps, of a-C BAM2 (Sect. 7.5)."""

@@ -7,7 +7,8 @@ import pandas as pd
 from scipy.constants import Julian_year
 
 from ratd.base.materials import get_material
-from ratd.base.units import NM
+from ratd.base.units import NM, PS
+from ratd.experiments.spin_up.calibration import PRINTED_STEP
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
@@ -15,7 +16,7 @@ from ratd.experiments.spin_up.findings.ensemble import MARK
 from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import effect
-from ratd.experiments.spin_up.printed import PAIR_ERROR, VISCOUS_EFFECT
+from ratd.experiments.spin_up.printed import FIRST_LOSS, PAIR_ERROR, SPIN_UP, VISCOUS_EFFECT
 from ratd.experiments.spin_up.radiation import grain_temperature, infrared_of, spin_up_time
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
@@ -25,9 +26,11 @@ from ratd.base.measured import Measured, median
 
 __all__ = [
     "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_pairs",
-    "of_printed_pairs", "of_ways", "recomputed",
+    "of_printed_pace", "of_printed_pairs", "of_ways", "recomputed",
 ]  # fmt: skip
 
+ROLLING = 3.2 * NM
+"""The greatest rolling limit that experiments gave [m] (Heim et al. 1999), the 0.2 of the model being the least."""
 PAIR_RADII = (10 * NM, 100 * NM)
 """The smallest and the largest monomers of Fig. 10."""
 PAIR_SHARE = 0.8 / 2.8
@@ -39,7 +42,8 @@ NEAR_LAMMPS = 0.15
 def of_ways(table):
     """What the rolling limit and the viscous time do to omega_disr, from the table of Fig. 9 of driven grains.
 
-    Of the rolling limits, a type each, the median that is farthest from 1.
+    Of the rolling limits, a type each, the median that is farthest from 1. ``ways.TYPE xi quarter`` is what `ROLLING`
+    does to the mark of the document.
     """
     values, held = {}, []
     for kind, rows in effect(table, "xi_c", "omega_disr").groupby("type"):
@@ -47,6 +51,9 @@ def of_ways(table):
         values[f"ways.{kind} xi"] = max(found, key=lambda ratio: (abs(ratio.value - 1.0), ratio.error))
         held += [is_within(ratio, 0.95, 1.05) for ratio in found]
     values["ways.holds xi"] = all_of(held)
+    for row in effect(table, "xi_c", MARK).to_dict("records"):
+        if np.isclose(row["value"], ROLLING, atol=0.0):
+            values[f"ways.{row['type']} xi quarter"] = Measured(row["median"], row["error"])
     time, printed = VISCOUS_EFFECT
     slow = effect(table, "T_vis", "omega_disr")
     (row,) = slow[(slow["type"] == "BAM2") & np.isclose(slow["value"], time, atol=0.0)].to_dict("records")
@@ -97,6 +104,54 @@ def of_printed_pairs(acceleration, factor):
     held = max(abs(ratio - 1.0) for ratio in found) <= PAIR_ERROR
     values = {"pairs.printed least": min(found), "pairs.printed most": max(found)}
     return values | {"pairs.printed holds": "yes" if held else "no"}
+
+
+def of_printed_pace(driven, printed, acceleration, factor):
+    """What the paper's own times give for the cell of its Fig. 4: omega of solid grains with the printed terms.
+
+    Parameters
+    ----------
+    driven, printed : pandas.DataFrame
+        Grains of both drives.
+    acceleration, factor : float
+        d omega/dt [rad/s2] and f of the step of `printed`.
+
+    Returns
+    -------
+    dict
+        ``pace.hours``, d omega/dt of `SPIN_UP`, beside ``pace.tuned``, both at the printed f; ``pace.omega hours`` and
+        ``pace.omega tuned``, the median omega [rad/s] at which grains part by
+        `ratd.experiments.spin_up.solid.solid_omega`; ``pace.least``, the same with three times as many hours;
+        ``pace.driven``, the first loss of the same driven grains; ``pace.short``, how many times that of hours falls
+        short of the printed omega; ``pace.holds`` and ``pace.holds driven``, whether it, and the driven one, is within
+        25 % of it. ``pace.step`` [ps] and ``pace.steps``, the step and how many of them an hour has.
+    """
+    (material, kind, size), printed_omega = FIRST_LOSS
+    own = printed[(printed["material"] == material) & (printed["type"] == kind) & np.isclose(printed["a_eff"], size)]
+    keys = ["material", "type", "nm", "seed"]
+    grains = own.merge(driven[[*keys, "omega_first_loss"]], on=keys, suffixes=("", "_driven"))
+    step = grains["timestep"] * PRINTED_STEP / factor
+
+    def parts(rate):
+        columns = zip(grains["omega_first_loss_driven"], grains["spin_share"], step, strict=True)
+        return float(np.median([solid_omega(threshold, share, rate, dt)[0] for threshold, share, dt in columns]))
+
+    end, time = SPIN_UP
+    tuned, hours = acceleration * PRINTED_STEP / factor, end / time
+    omega, known = parts(hours), float(grains["omega_first_loss_driven"].median())
+    found = {"": omega, " driven": known}
+    return {
+        "pace.tuned": tuned,
+        "pace.hours": hours,
+        "pace.omega tuned": parts(tuned),
+        "pace.driven": known,
+        "pace.omega hours": omega,
+        "pace.least": parts(hours / 3.0),
+        "pace.short": printed_omega / omega,
+        **{f"pace.holds{name}": "yes" if 0.8 < own / printed_omega < 1.25 else "no" for name, own in found.items()},
+        "pace.step": float(step.median()) / PS,
+        "pace.steps": time / float(step.median()),
+    }
 
 
 def of_formulae(table):

@@ -19,6 +19,8 @@ EXAMPLE = ("q-S", "BAM1", 400 * NM)
 """The grain of which the document works out omega."""
 LARGER = 150 * NM
 """Sizes from which on grains have monomers enough for a curve to meet the mean of every size."""
+FROM = (100 * NM, 150 * NM)
+"""Least sizes for which q is told besides: whether it hangs on the smallest ones."""
 CURVED = 2.0
 """So many standard errors of q from 0 reject a straight power of size."""
 
@@ -54,6 +56,9 @@ def of_curve(table, grown):
         values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
         values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
         values |= _farthest(table[table["type"] == kind], kind, row)
+        for least in FROM:
+            part = curved_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * least)], MARK).iloc[0]
+            values[f"curve.{kind} q from {least / NM:.0f}"] = Measured(part["q"], part["q_error"])
         bent += [kind] if abs(row["q"]) > CURVED * row["q_error"] else []
     values["curve.rejected"] = " and ".join(bent) or "no type"
     for name in {name for name, _ in TABLE_3}:

@@ -16,6 +16,7 @@ from ratd.base.errors import FileError
 from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
+from ratd.experiments.spin_up.findings.claims import all_of, is_below
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.base.measured import Measured, median
@@ -216,7 +217,7 @@ def of_studies(tables):
 
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
-        with the least and the most of these.
+        with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -285,7 +286,8 @@ def _other(name, table, ensemble):
 
 def _equal(tables, values):
     """Slots of both studies of equal monomers together."""
-    found = {}
+    compact = [values[f"{name}.{kind} filling_factor"] for name in EQUAL for kind in TYPES]
+    found = {"equal.holds compact": all_of(is_below(ratio, 1.0) for ratio in compact)}
     small, large = (tables[name] for name in EQUAL)
     for kind, part in _parts(large):
         span = np.log(cell_ratio(part, small, "radius_1").value)
