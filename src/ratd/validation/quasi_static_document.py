@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.errors import FileError
-from ratd.base.measured import Measured, median
+from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, size_key
@@ -138,7 +138,7 @@ def findings(table, looks):
         if max(values["worst omega_first_loss"].value, values["worst omega_mass_75"].value) < 0.01
         else "depend"
     )
-    values |= _single(table)
+    values |= _means(table, own) | _single(table)
     values |= _arms(table, own) | _steps(own) | _torque(table, own) | _slow(table, own) | _remnants(looks)
     return values
 
@@ -196,6 +196,23 @@ def is_hard(table):
     return (table["type"] == "BA") & (table["a_eff"] > 250 * NM)
 
 
+def _means(table, own):
+    """Geometric means of all types together, and the farthest that a number of the scheme moves them."""
+    values, steady = {}, {mark: [] for mark in MARKS}
+    for vary, value in (*SHOWN, ("epsilon", 0.004)):
+        pairs = _paired(table, own, vary, value)
+        for mark in MARKS:
+            found = geometric_mean(pairs[mark] / pairs[f"{mark}_own"])
+            values[f"mean {vary} {value:g} {mark}"] = found
+            if (vary, value) in STEADY:
+                steady[mark].append(found)
+        values[f"mean {vary} {value:g} grains"] = len(pairs)
+    for mark, means in steady.items():
+        farthest = max(means, key=lambda found: abs(found.value - 1.0))
+        values[f"mean farthest {mark}"] = Measured(abs(farthest.value - 1.0), farthest.error)
+    return values
+
+
 def _single(table):
     """How far one in six grains of the hard case is off at least, with a weak drag and with what else does most.
 
@@ -239,7 +256,6 @@ def _torque(table, own):
     yielding = pairs["axis_ratio_mass_75"] / pairs["axis_ratio_mass_75_own"]
     found = median(omega)
     values["torque change"] = Measured(abs(found.value - 1.0), found.error)
-    values["torque mean"] = np.exp(np.log(omega).mean())
     values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
     values["torque higher"] = (omega > 1.02).mean()
     values["torque stretched"] = _text(median_of(yielding[omega > 1.02]))
