@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import ratd
 from pictures_alike import ALIKE, difference, unlike
@@ -23,6 +24,7 @@ from ratd.experiments.spin_up.findings.beside import (
 )
 from ratd.experiments.spin_up.findings.claims import all_of, claims, grown_claims, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
+from ratd.experiments.spin_up.findings.fragments import of_all_that_left
 from ratd.pictures.style import save
 
 ROOT = Path(__file__).parents[3]
@@ -203,6 +205,15 @@ def test_the_last_contact_is_beside_the_first_loss(data):
     assert told(data, omega_end=10.0 * own)["d.holds to the last"] == "yes"
     late = told(data, omega_end=30.0 * own)
     assert late["d.holds to the last"] == "no" and late["d.to the last"].value == pytest.approx(30.0)
+
+
+def test_pieces_of_a_few_monomers_are_weighed_up_to_the_last_contact():
+    def run(few):
+        pieces = {"fragment_mass": ("fragment", [few, 1.0 - few]), "fragment_n_monomers": ("fragment", [3, 4])}
+        return xr.Dataset(pieces)
+
+    found = of_all_that_left("d", [run(0.1), run(0.3)])["d.few in the end"]
+    assert found.value == pytest.approx(20.0) and found.error == pytest.approx(10.0)
 
 
 def test_grains_as_grown_are_judged_at_all_sizes_and_at_those_of_figure_6(data):

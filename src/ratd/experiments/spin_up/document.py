@@ -16,7 +16,7 @@ from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
 from ratd.base.units import NM
 from ratd.experiments.spin_up.findings import beside, claims, ensemble
-from ratd.experiments.spin_up.findings.fragments import of_exponents, of_shares
+from ratd.experiments.spin_up.findings.fragments import of_all_that_left, of_exponents, of_shares
 from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
 from ratd.experiments.spin_up.findings.literature import of_literature
 from ratd.experiments.spin_up.findings.mark_rules import of_mark_rules
@@ -228,6 +228,7 @@ def findings(data, fits):
         fragments = data.fragments[drive]
         values |= ensemble.of_drive(letter, table) | ensemble.of_table_3(letter, fits[drive])
         values |= claims.claims(letter, table, fragments) | of_shares(letter, fragments)
+        values |= of_all_that_left(letter, data.runs[f"figure4/{drive}"])
     values |= of_law(data.driven) | ensemble.marks_compared(data.driven) | ensemble.table_3_by_mark(data.driven)
     values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)

@@ -1,9 +1,15 @@
-"""What leaves a grain while the first half of its mass does."""
+"""What leaves a grain: while the first half of its mass does, and up to its last contact."""
 
+import numpy as np
+
+from ratd.base.statistics import mean_of
 from ratd.base.measured import Measured
 from ratd.experiments.spin_up.fragmentation import exponents, fragment_shares, size_class
 
-__all__ = ["of_exponents", "of_shares"]
+__all__ = ["of_all_that_left", "of_exponents", "of_shares"]
+
+FEW = 3
+"""Greatest number of monomers of a piece of "a few"."""
 
 
 def of_shares(letter, fragments):
@@ -14,6 +20,18 @@ def of_shares(letter, fragments):
             start = f"{letter}.fragments {row['type']} {name} {row['class']}"
             values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
     return values
+
+
+def of_all_that_left(letter, runs):
+    """Share [%] of the mass that leaves up to the last contact in pieces of at most `FEW` monomers, mean of runs.
+
+    Pieces are counted as they leave the largest one, and not followed on.
+    """
+    shares = []
+    for run in runs:
+        mass = run["fragment_mass"].values
+        shares.append(100.0 * mass[run["fragment_n_monomers"].values <= FEW].sum() / mass.sum())
+    return {f"{letter}.few in the end": Measured(*mean_of(np.array(shares)))}
 
 
 def of_exponents(fragments):
