@@ -102,6 +102,35 @@ def test_a_killed_run_goes_on_after_its_last_hold(tmp_path, holds):
     assert not any(tmp_path.iterdir())
 
 
+@needs_lammps
+def test_ratd_does_not_drive_again_what_it_had_driven_before_a_kill(tmp_path, monkeypatch):
+    grain = ratd.grow("BA", 60e-9, "q-S", 0)
+    how = {"unit": 0.8 * cut_bound(grain), "timestep_factor": 0.05, "first": 0.9}
+    whole = large.both(grain, **how)
+
+    def killed(*arguments):
+        raise KeyboardInterrupt
+
+    real, drive = large.InLammps.turn, large.driven_from_below
+    monkeypatch.setattr(large.InLammps, "turn", killed)
+    with pytest.raises(KeyboardInterrupt):
+        large.both(grain, **how, checkpoint=tmp_path / "run", source="abc")
+    assert [path.name for path in tmp_path.iterdir()] == ["run_ratd_abc.npy"]
+    monkeypatch.setattr(large.InLammps, "turn", real)
+    driven_codes = []
+
+    def noted(make, *arguments):
+        with make() as example:
+            driven_codes.append(type(example).__name__)
+        return drive(make, *arguments)
+
+    monkeypatch.setattr(large, "driven_from_below", noted)
+    again = large.both(grain, **how, checkpoint=tmp_path / "run", source="abc")
+    assert driven_codes == ["InLammps"] and not any(tmp_path.iterdir())
+    for name, values in whole.items():
+        np.testing.assert_array_equal(again[name], values)
+
+
 def test_a_grain_that_breaks_at_the_first_omega_is_driven_from_a_lower_one():
     grain = ratd.grow("BA", 60e-9, "q-S", 0)
     state = relax(grain)

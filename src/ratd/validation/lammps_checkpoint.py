@@ -1,6 +1,7 @@
 """What a grain that LAMMPS drives had reached at its last hold, so that a killed run goes on from there.
 
-Beside each other stand the holds so far, PATH.npz, and the spheres, PATH.NUMBER.restart, which the holds name.
+Beside each other stand the holds so far, PATH.npz, and the spheres, PATH.NUMBER.restart, which the holds name. What is
+not LAMMPS' own, and was finished before, is kept by `once`.
 """
 
 from pathlib import Path
@@ -9,7 +10,7 @@ import numpy as np
 
 from ratd.pipeline.atomic import atomic
 
-__all__ = ["forget", "keep", "last_hold"]
+__all__ = ["forget", "keep", "last_hold", "once"]
 
 
 def _files_of(checkpoint):
@@ -58,3 +59,15 @@ def forget(checkpoint):
     if checkpoint is not None:
         for path in _files_of(checkpoint):
             path.unlink(missing_ok=True)
+
+
+def once(path, make):
+    """An array from a file, which is made first where it is not there; made anew each time where the path is None."""
+    if path is None:
+        return make()
+    path = Path(path)
+    if not path.is_file():
+        found = make()
+        with atomic(path) as temporary, open(temporary, "wb") as handle:
+            np.save(handle, found)
+    return np.load(path)

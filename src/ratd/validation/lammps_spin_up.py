@@ -39,6 +39,7 @@ from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 from ratd.validation import peer_lammps
 from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driven, threshold
+from ratd.validation.lammps_checkpoint import once
 from ratd.validation.lammps_findings import SHORT, of_each
 from ratd.validation.plan import Checks
 
@@ -213,7 +214,7 @@ def spun(material, kind, size, seed, timestep_factor, drive, source="", checkpoi
     marks = disruption(spin_up(grain))
     found = {mark: marks[name].item() for mark, name in _OMEGA.items()}
     if drive:
-        holds = both(grain, found["first loss"], timestep_factor, checkpoint=checkpoint)
+        holds = both(grain, found["first loss"], timestep_factor, checkpoint=checkpoint, source=source)
     else:
         holds = {name: np.empty(0) for name in _HOLD}
     row = xr.Dataset(
@@ -237,7 +238,7 @@ def spun(material, kind, size, seed, timestep_factor, drive, source="", checkpoi
     return row, ", ".join(said)
 
 
-def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoint=None):
+def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoint=None, source=""):
     """What both codes do with a grain that is driven, as the variables of the kind along ``hold``.
 
     Parameters
@@ -251,7 +252,10 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoi
     classes : int or None
         See `ratd.validation.peer_lammps.sort_by_radius`.
     checkpoint : path-like, optional
-        Where LAMMPS, which takes hours for a large grain, keeps its last hold; see `ratd.validation.lammps.driven`.
+        Where LAMMPS, which takes hours for a large grain, keeps its last hold, see `ratd.validation.lammps.driven`, and
+        where the holds of ratd are kept meanwhile.
+    source : str
+        Hash of the source, which these holds of ratd belong to.
 
     Returns
     -------
@@ -263,13 +267,16 @@ def both(grain, unit, timestep_factor, *, first=FIRST, classes=CLASSES, checkpoi
         "LAMMPS": partial(InLammps, state, grain.material, turning=True, classes=classes),
     }
     kept = {"ratd": None, "LAMMPS": checkpoint}
+    done = {"ratd": None if checkpoint is None else Path(f"{checkpoint}_ratd_{source}.npy"), "LAMMPS": None}
     parts = []
     for code, make in makers.items():
         with make() as example:
             timestep = example.timestep
-        held = driven_from_below(make, unit, first, kept[code])
+        held = once(done[code], partial(driven_from_below, make, unit, first, kept[code]))
         number = np.full(len(held), CODES.index(code))
         parts.append((number, held[:, 0], held[:, 3], np.full(len(held), timestep)))
+    if checkpoint is not None:
+        done["ratd"].unlink()
     return dict(zip(_HOLD, map(np.concatenate, zip(*parts, strict=True)), strict=True))
 
 
