@@ -52,7 +52,7 @@ def test_the_page_is_short_and_its_first_lines_tell_what_is_open():
     assert len(lines) <= 200 and text.count("![") <= 6
     answer = " ".join(lines[:10])
     assert all(word in answer for word in ("something outside this code", "largest known error", "open"))
-    assert text.count("| open |") == 4 and "Four checks are open" in answer
+    assert text.count("| open |") == 6 and "Six checks are open" in answer
 
 
 def test_another_verdict_is_an_error(tables, template):

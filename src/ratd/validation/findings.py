@@ -59,7 +59,7 @@ CONTACTS = 0.02
 PRESSED = 0.03
 """... and the mean pressure up to phi = 0.03, where no limit of LAMMPS follows the load yet."""
 ALIKE = 0.05
-"""... and from 0.1 to 0.15, in the same dense clusters without twisting, or with the limits of LAMMPS in ratd."""
+"""... and above, also in dense clusters without twisting, or with the limits of LAMMPS in ratd."""
 CLOSED = {"compression": 5e-3, "long steps": 5e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
 SHIFTED = 0.01
@@ -227,13 +227,19 @@ def of_compression(table):
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
     within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in EDGES[:-1])
     alike = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < PRESSED for low in EDGES[:2])
-    return found | {"compression.verdict": _verdict(within), "compression.pressure verdict": _verdict(alike)}
+    dense = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < ALIKE for low in EDGES[2:-1])
+    return found | {
+        "compression.verdict": _verdict(within),
+        "compression.pressure verdict": _verdict(alike),
+        "compression.dense verdict": _verdict(dense),
+    }
 
 
 def of_dense(table):
     """Dense clusters beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_dense`."""
     found = dense_over(table)
-    within = all(abs(found[f"dense.pressure_{pair}_0.1"].value - 1.0) < ALIKE for pair in ("untwisted", "limits"))
+    bins = ("untwisted_0.05", "untwisted_0.1", "limits_0.1")
+    within = all(abs(found[f"dense.pressure_{pair}"].value - 1.0) < ALIKE for pair in bins)
     return found | {"dense.verdict": _verdict(within)}
 
 
@@ -447,7 +453,8 @@ def of_literal(table):
     exact = exact.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
     exact = exact[np.isfinite(exact["omega_first_loss"])]
     grain, higher = runs.groupby(GRAIN).ngroup(), runs["omega_first_loss"] / runs["known"]
-    values = {
+    bias = {f"literal.{kind} solid": median(part, group=grain[part.index]) for kind, part in over.groupby(runs["type"])}
+    values = bias | {
         "literal.runs": len(runs),
         "literal.grains": len(runs.groupby(GRAIN)),
         "literal.solid": median(over, group=grain),

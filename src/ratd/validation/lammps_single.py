@@ -267,7 +267,8 @@ def findings(table):
         Slots ``lammps_single.LAW MARK ...`` with LAW ``own`` or ``limits``, MARK ``first`` or ``quarter``: ``known``,
         grains that have one in both codes; ``near``, those of them in which LAMMPS is within `NEAR_LAMMPS` of the
         median of the starts; ``reached``, within that of one of them;
-        ``least`` and ``most``, LAMMPS over the median; ``spread``, the greatest ratio of two starts of one grain.
+        ``least`` and ``most``, LAMMPS over the median; ``spread``, the greatest ratio of two starts of one grain;
+        ``same``, grains of which all starts have the same mark.
         ``starts`` is their number; ``verdict``, whether all are near at both marks with the limits of LAMMPS.
     """
     values = {"lammps_single.grains": len(table.drop_duplicates(GRAIN)), "lammps_single.starts": STARTS}
@@ -277,6 +278,7 @@ def findings(table):
         for name, column in (("near", "median"), ("reached", "nearest")):
             values[f"{slot} {name}"] = int(((part[column] - 1.0).abs() <= NEAR_LAMMPS).sum())
         values[f"{slot} least"], values[f"{slot} most"] = part["median"].min(), part["median"].max()
+        values[f"{slot} same"] = int(np.isclose(part["most"], part["least"], atol=0.0).sum())
         values[f"{slot} spread"] = (part["most"] / part["least"]).max()
     limited = table[table["limits"] == "limits of LAMMPS"].dropna(subset="median")
     near = ((limited["median"] - 1.0).abs() <= NEAR_LAMMPS).all()

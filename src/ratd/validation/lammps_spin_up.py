@@ -25,7 +25,7 @@ import xarray as xr
 from ratd.aggregates.growth import grow
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
-from ratd.base.measured import median
+from ratd.base.measured import geometric_mean, median
 from ratd.base.units import NM
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cells import TYPES, size_key, sort_cells
@@ -394,18 +394,20 @@ def findings(table):
     -------
     dict
         Slots ``lammps_spin_up.GROUP MARK ...``, GROUP being a type, a size such as ``300 nm``, a material, or ``all``,
-        MARK ``first`` or ``quarter``: the median of LAMMPS over the spin-up of production; with ``driven`` behind it,
+        MARK ``first`` or ``quarter``: the median of LAMMPS over the spin-up of production; with ``mean`` behind it
+        the geometric mean; with ``driven`` behind it,
         over ratd driven alike; with ``waits`` behind it, of ratd driven over the spin-up of production. Errors by
         bootstrap over grains, of at least three; ``GROUP MARK grains`` is their number. Of a grain that was driven with
         both sorts of types that with own types counts, and ``classes MARK`` is the greatest difference of the other.
-        ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``; ``all MARK least``
-        and so on: single grains, see `ratd.validation.lammps_findings.of_each`.
+        ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``; ``GROUP MARK
+        least`` and so on: single grains, see `ratd.validation.lammps_findings.of_each`.
     """
     table = table.assign(size=[f"{size / NM:.0f} nm" for size in table["a_eff"]])
     one = one_each(table)
     values = {
         "lammps_spin_up.grains": len(one.drop_duplicates(GRAIN)),
         "lammps_spin_up.most monomers": int(one["n_monomers"].max()),
+        "lammps_spin_up.small": int((one.drop_duplicates(GRAIN)["n_monomers"] < 100).sum()),
     }
     groups = {"all": one}
     for column in ("type", "size", "material"):
@@ -415,10 +417,11 @@ def findings(table):
             own = group[group["mark"] == mark]
             slot = f"lammps_spin_up.{name} {short}"
             values[slot] = median(own["ratio"])
+            values[f"{slot} mean"] = geometric_mean(own["ratio"])
             values[f"{slot} driven"] = median(own["LAMMPS"] / own["ratd"])
             values[f"{slot} waits"] = median(own["ratd"] / own["waits"])
             values[f"{slot} grains"] = int(np.isfinite(own["ratio"]).sum())
-        values |= of_each(f"lammps_spin_up.all {short}", one.loc[one["mark"] == mark, "ratio"].dropna())
+            values |= of_each(slot, own["ratio"].dropna())
         both_types = table[table["mark"] == mark].pivot_table(index=GRAIN, columns="types", values="LAMMPS")
         if {"own", "classes"} <= set(both_types):
             differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()
