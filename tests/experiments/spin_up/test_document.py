@@ -138,6 +138,7 @@ def test_the_printed_pace_is_beside_the_tuned_one():
     assert found["pace.least"] == pytest.approx(1.515 * (3e10 / 10800 / step) ** (1 / 3), rel=0.05)
     far = of_printed_pace(table.assign(omega_first_loss=1e12), table, 1.25e14, 0.125)
     assert far["pace.omega hours"] == pytest.approx(1.515 * (3e10 / 3600 / step) ** (1 / 3), rel=1e-3)
+    assert found["pace.driven"] == found["pace.printed"] == 3e7
     assert found["pace.short"] == pytest.approx(3e8 / found["pace.omega hours"])
     assert (found["pace.holds"], found["pace.holds driven"]) == ("no", "no")
     assert of_printed_pace(table.assign(omega_first_loss=3e8), table, 1e14, 0.02)["pace.holds driven"] == "yes"
@@ -193,10 +194,10 @@ def test_shapes_are_judged_by_what_grains_change(data):
     kept = told(data, **{f"axis_{axis}_disr": axes[axis] for axis in "abc"})
     assert kept["d.oblate BA change"].value == 0.0 and kept["d.holds oblate BA"] == "no"
     flat = told(data, axis_a_disr=1.0, axis_b_disr=2.0, axis_c_disr=2.0)
-    parts = ("BA", "BAM", "small BA")
-    assert [flat[f"d.holds oblate {part}"] for part in parts] == ["yes", "yes", "no"]
+    parts = ("BA", "BAM", "small BAM", "small BA")
+    assert [flat[f"d.holds oblate {part}"] for part in parts] == ["yes", "yes", "yes", "no"]
     long = told(data, axis_a_disr=1.0, axis_b_disr=1.0, axis_c_disr=2.0)
-    assert [long[f"d.holds oblate {part}"] for part in parts] == ["no", "no", "yes"]
+    assert [long[f"d.holds oblate {part}"] for part in parts] == ["no", "no", "no", "yes"]
     assert long["d.oblate BAM disr"].value == 0.0
 
 
@@ -220,11 +221,12 @@ def test_grains_as_grown_are_judged_at_all_sizes_and_at_those_of_figure_6(data):
     half = np.arange(len(data.grown)) % 2 == 0
     axes = {"axis_a": 1.0, "axis_b": np.where(half, 1.9, 1.1), "axis_c": 2.0}
     even = grown_claims(data.grown.assign(**axes))
-    assert (even["g.holds oblate"], even["g.holds oblate figure 6"]) == ("yes", "yes")
-    shown = data.grown["nm"].round().isin((200, 350, 500))
-    flat = grown_claims(data.grown.assign(**axes | {"axis_b": np.where(half | shown, 1.9, 1.1)}))
-    assert flat["g.oblate figure 6"].value == 100.0 and flat["g.holds oblate figure 6"] == "no"
-    assert 50.0 < flat["g.oblate"].value < 80.0
+    found = [even[f"g.holds oblate{name}"] for name in ("", " smallest", " larger")]
+    assert found == ["yes", "open", "open"]
+    shown = data.grown["nm"].round().isin((350, 500))
+    long = grown_claims(data.grown.assign(**axes | {"axis_b": np.where(half & ~shown, 1.9, 1.1)}))
+    assert long["g.oblate larger"].value == 0.0 and long["g.holds oblate larger"] == "yes"
+    assert long["g.holds oblate smallest"] == "open" and 30.0 < long["g.oblate"].value < 50.0
 
 
 def test_a_quarter_is_at_omega_disr_by_the_median_of_a_type(data):

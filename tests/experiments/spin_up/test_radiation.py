@@ -295,6 +295,8 @@ def test_what_moves_the_size_for_one_material_and_strength(table):
     names = ("", " first", " DMT", " one star", " graphite")
     size = {name: values[f"radiation.q-S BAM2 10000 ours{name}"].value for name in names}
     # what holds more survives at a greater size, light from one side turns faster, graphite is braked more
+    third, thrice = (values[f"radiation.q-S BAM2 10000 ours {name}"].value for name in ("a third", "thrice"))
+    assert thrice < size[""] < third
     assert size[" one star"] < size[" first"] < size[""] < min(size[" DMT"], size[" graphite"])
     assert values["radiation.q-S BAM2 10000 printed first"].value == values["radiation.q-S BAM2 10000 printed"].value
     assert "radiation.a-C BAM2 10000 ours DMT" not in values

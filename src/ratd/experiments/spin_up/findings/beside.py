@@ -48,6 +48,7 @@ def of_ways(table):
     values, held = {}, []
     for kind, rows in effect(table, "xi_c", "omega_disr").groupby("type"):
         found = [Measured(row["median"], row["error"]) for row in rows.to_dict("records")]
+        values[f"ways.holds xi {kind}"] = all_of(is_within(ratio, 0.95, 1.05) for ratio in found)
         values[f"ways.{kind} xi"] = max(found, key=lambda ratio: (abs(ratio.value - 1.0), ratio.error))
         held += [is_within(ratio, 0.95, 1.05) for ratio in found]
     values["ways.holds xi"] = all_of(held)
@@ -122,9 +123,10 @@ def of_printed_pace(driven, printed, acceleration, factor):
         ``pace.hours``, d omega/dt of `SPIN_UP`, beside ``pace.tuned``, both at the printed f; ``pace.omega hours`` and
         ``pace.omega tuned``, the median omega [rad/s] at which grains part by
         `ratd.experiments.spin_up.solid.solid_omega`; ``pace.least``, the same with three times as many hours;
-        ``pace.driven``, the first loss of the same driven grains; ``pace.short``, how many times that of hours falls
-        short of the printed omega; ``pace.holds`` and ``pace.holds driven``, whether it, and the driven one, is within
-        25 % of it. ``pace.step`` [ps] and ``pace.steps``, the step and how many of them an hour has.
+        ``pace.driven`` and ``pace.printed``, the median first loss of the grains of the cell with either drive;
+        ``pace.short``, how many times that of hours falls short of the printed omega; ``pace.holds`` and ``pace.holds
+        driven``, whether it, and the driven one, is within 25 % of it. ``pace.step`` [ps] and ``pace.steps``, the step
+        and how many of them an hour has.
     """
     (material, kind, size), printed_omega = FIRST_LOSS
     own = printed[(printed["material"] == material) & (printed["type"] == kind) & np.isclose(printed["a_eff"], size)]
@@ -138,12 +140,14 @@ def of_printed_pace(driven, printed, acceleration, factor):
 
     end, time = SPIN_UP
     tuned, hours = acceleration * PRINTED_STEP / factor, end / time
-    omega, known = parts(hours), float(grains["omega_first_loss_driven"].median())
+    of_cell = (driven["material"] == material) & (driven["type"] == kind) & np.isclose(driven["a_eff"], size)
+    omega, known = parts(hours), float(driven.loc[of_cell, "omega_first_loss"].median())
     found = {"": omega, " driven": known}
     return {
         "pace.tuned": tuned,
         "pace.hours": hours,
         "pace.omega tuned": parts(tuned),
+        "pace.printed": float(own["omega_first_loss"].median()),
         "pace.driven": known,
         "pace.omega hours": omega,
         "pace.least": parts(hours / 3.0),

@@ -56,6 +56,8 @@ def of_curve(table, grown):
         values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
         values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
         values |= _farthest(table[table["type"] == kind], kind, row)
+        left_out = table.loc[table["type"] == kind, MARK].isna().groupby(np.round(table["a_eff"] / NM)).mean()
+        values[f"curve.{kind} left out"] = float(left_out.max())
         for least in FROM:
             part = curved_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * least)], MARK).iloc[0]
             values[f"curve.{kind} q from {least / NM:.0f}"] = Measured(part["q"], part["q_error"])
@@ -69,6 +71,7 @@ def of_curve(table, grown):
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
     cell, measured = (_of_cell(each, *EXAMPLE) for each in (grown, table))
     values["example.median 1e7"], values["example.n"] = median(measured[MARK] / 1e7), len(measured)
+    values["example.scatter"] = math.exp(np.log(measured[MARK]).std())
     values["example.printed"] = eq33(
         size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
         cell["filling_factor"].mean(), *TABLE_3[material, kind],

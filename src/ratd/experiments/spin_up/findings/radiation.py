@@ -16,9 +16,11 @@ SURROUNDINGS = {
     "one star": DIFFUSE._replace(anisotropy=1.0, wavelength=0.5e-6),
     "directed": DIFFUSE._replace(anisotropy=0.7),
     "bluer": DIFFUSE._replace(wavelength=0.8e-6),
+    "a third": DIFFUSE._replace(anisotropy=DIFFUSE.anisotropy / 3.0),
+    "thrice": DIFFUSE._replace(anisotropy=3.0 * DIFFUSE.anisotropy),
     "denser": DIFFUSE._replace(hydrogen=10.0 * DIFFUSE.hydrogen),
 }
-"""Name of a variant -> what surrounds the grain."""
+"""Name of a variant -> what surrounds the grain; the torque goes with the anisotropy."""
 DMT = math.sqrt(4.0 / 3.0)
 """omega that a pull-off force 4/3 as great would hold, over that of JKR; driven grains come to 1.11 to 1.15."""
 FARTHEST = 2.0 * COMPUTED[1]

@@ -20,6 +20,7 @@ from ratd.experiments.spin_up.findings.claims import all_of, is_below
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.base.measured import Measured, median
+from ratd.base.units import NM
 
 __all__ = ["MARKS", "cell_ratio", "carried_over", "of_studies", "paired", "studies", "with_radii"]
 
@@ -217,7 +218,8 @@ def of_studies(tables):
 
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
-        with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours.
+        with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours at every
+        size. For other monomers also ``TYPE SIZE nm`` for the filling factor and a quarter.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -275,6 +277,9 @@ def _other(name, table, ensemble):
     for kind, part in _parts(table):
         for slot, column in columns.items():
             values[f"{name}.{kind} {slot}"] = cell_ratio(part, ensemble, column)
+        for size, own in part.groupby(np.round(part["a_eff"] / NM)):
+            for column in ("filling_factor", "omega_mass_75"):
+                values[f"{name}.{kind} {size:.0f} nm {column}"] = cell_ratio(own, ensemble, column)
     for mark in MARKS:
         for k in POWERS:
             for kind in TYPES:
@@ -286,7 +291,9 @@ def _other(name, table, ensemble):
 
 def _equal(tables, values):
     """Slots of both studies of equal monomers together."""
-    compact = [values[f"{name}.{kind} filling_factor"] for name in EQUAL for kind in TYPES]
+    compact = [
+        value for name, value in values.items() if name.startswith(EQUAL) and name.endswith(" nm filling_factor")
+    ]
     found = {"equal.holds compact": all_of(is_below(ratio, 1.0) for ratio in compact)}
     small, large = (tables[name] for name in EQUAL)
     for kind, part in _parts(large):
