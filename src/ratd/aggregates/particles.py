@@ -235,6 +235,8 @@ def _chosen(frames, frame):
 
 def _read_xyz(path, frame):
     lines = path.read_text(encoding="utf-8-sig").splitlines()
+    if lines and not re.fullmatch(r"\s*(-?\d+)?\s*", lines[0]):
+        raise ValueError("its first line must be the number of spheres; columns x y z r belong into .txt, .dat or .csv")
     frames = _frames(lines, lambda lines: int(lines[0]) + 2)
     lines = _chosen(frames, frame)
     try:

@@ -172,3 +172,20 @@ def test_two_that_do_not_meet_are_warned_of():
     with pytest.warns(UserWarning, match=r"do not meet: they begin 2e-08 m apart with 0.01 m/s; take at least 4e-06 s"):
         run = collide(SMALL, SMALL, 0.01, relaxed=True, **QUICK)
     assert run["n_pieces"].values[-1] == 2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_own_spheres_that_only_touch_come_to_rest_in_one_piece(seed):
+    """At exactly a_i + a_j, as files of other programs have them; under DMT nothing pulls beyond touch."""
+    rng = np.random.default_rng(seed)
+    position = [np.zeros(3)]
+    while len(position) < 10:
+        direction = rng.normal(size=3)
+        place = position[rng.integers(len(position))] + 2e-7 * direction / np.linalg.norm(direction)
+        if min(np.linalg.norm(place - other) for other in position) > 1.999e-7:
+            position.append(place)
+    grain = ratd.Grain(np.array(position), np.full(10, 1e-7), "q-S")
+    rested = at_rest(grain)
+    assert len(rested.contacts) == len(grain.contacts) == 9
+    distance = np.linalg.norm(rested.position[rested.contacts[:, 0]] - rested.position[rested.contacts[:, 1]], axis=1)
+    assert (distance < 2e-7).all()

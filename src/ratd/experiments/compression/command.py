@@ -45,7 +45,7 @@ SMOOTH = 1.1
     help="C_v: the box shrinks with dL/dt = -2 C_v L/t_0. The smaller, the lower the phi from which it is static.",
 )  # fmt: skip
 @click.option(
-    "--until-phi", default=0.3, show_default=True, type=Finite(0, 0.6, min_open=True),
+    "--until-phi", default=0.3, show_default=True, type=Finite(0, 0.64, min_open=True),
     help="Filling factor at which to end.",
 )  # fmt: skip
 def command(file, material, unit, starts, out, strain_rate, until_phi):

@@ -96,7 +96,10 @@ def _within(table, low, high):
     whole = np.isfinite(pressure).all(axis=1)
     covered = phi.min() / BIN <= low * NEAR and phi.max() * BIN >= high / NEAR
     if not inside.any() or not whole.any() or not covered:
-        raise InputError(f"no run covers the filling factors from {low:g} to {high:g}.")
+        raise InputError(
+            f"no run covers the filling factors from {low:g} to {high:g}; take a low and a high between "
+            f"{phi.min():.3g} and {phi.max():.3g}."
+        )
     return phi[inside], pressure[whole]
 
 

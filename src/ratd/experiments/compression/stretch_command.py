@@ -35,7 +35,7 @@ __all__ = ["command", "show"]
 @click.command("stretch")
 @aggregate_options
 @click.option(
-    "--phi", default=0.1, show_default=True, type=Finite(0, 0.6, min_open=True),
+    "--phi", default=0.1, show_default=True, type=Finite(0, 0.64, min_open=True),
     help="Filling factor to which the aggregate is compressed first.",
 )  # fmt: skip
 @click.option(
