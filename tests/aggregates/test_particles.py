@@ -127,7 +127,7 @@ def test_files_as_others_write_them(tmp_path, name, text):
         (
             "a.xyz",
             "0 0 0 20\n40 0 0 20\n",
-            "its first line must be the number of spheres; columns x y z r belong into .txt",
+            "its first line must be the number of spheres; columns",
         ),
         ("a.xyz", "-2\n\n", "a frame begins with '-2'; allowed: the number of its spheres"),
         ("a.xyz", "1\nProperties=pos:R:3:r:R:1 unit=pc\n0 0 0 2\n", "its unit is 'pc'; allowed: m, cm"),
