@@ -286,12 +286,12 @@ def verdicts(values, sets):
         found["high_density"] = "hardly depends" if alike else "depends"
     if "slow_16384.over_0.03" in values:
         late = values["slow_16384.over_0.03"]
-        early, *later = [values[f"slow_16384.over_{phi}"] for phi in (0.005, 0.01, 0.02)]
+        early = values["slow_16384.over_0.005"]
         found["slow_early"] = "less" if early.value + 2.0 * early.error < 1.0 else "as much"
-        less = all(own.value < 1.0 for own in later)
-        beside_all = [values[f"slow_16384.over_all_{phi}"] for phi in (0.01, 0.02)]
-        sure = all(own.value + 2.0 * own.error < 1.0 for own in (*later, *beside_all))
-        found["slow_later"] = "show" if sure else "suggest" if less else "deny"
+        for phi in (0.01, 0.02):
+            both = [values[f"slow_16384.{over}_{phi}"] for over in ("over", "over_all")]
+            sure = all(own.value + 2.0 * own.error < 1.0 for own in both)
+            found[f"slow_{phi}"] = "show" if sure else "suggest" if both[0].value < 1.0 else "deny"
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
