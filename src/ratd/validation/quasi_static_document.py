@@ -22,6 +22,7 @@ from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import remnant
+from ratd.validation.findings import GRAIN
 from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
 
 __all__ = ["collect", "findings", "main", "redraw"]
@@ -53,7 +54,6 @@ SHOWN = {
 }
 """What is changed, with its name on the figure; the names of its slots begin with both."""
 ARMS = (("stretch", 1e-14), ("stretch", 5e-15), ("unrest", 0.005), ("pace", 0.005))
-GRAIN = ["material", "type", "a_eff", "seed"]
 KNOWN = 0.01
 """Error of the median of a class that tells something of 1 %."""
 SEEN = np.radians(1.0)
@@ -125,7 +125,6 @@ def findings(table, looks):
     values["together known"] = together["error"].max()
     known = (every_class["error"] < KNOWN) & (every_class["n"] >= ENOUGH)
     fine = every_class[known]
-    values["classes"] = len(fine[fine["mark"] == "omega_mass_75"])
     for mark in MARKS:
         part = fine[fine["mark"] == mark]
         values[f"classes {mark}"] = len(part)

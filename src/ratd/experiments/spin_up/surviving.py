@@ -195,9 +195,9 @@ def surviving(
     rows = []
     for name in dict.fromkeys(table["material"]):
         material = get_material(name, materials)
+        infrared = infrared_of(name) if coefficient is None else coefficient
         for kind in dict.fromkeys(table.loc[table["material"] == name, "type"]):
             ratio = grown_inertia(grown, name, kind) if porous else None
-            infrared = infrared_of(name) if coefficient is None else coefficient
             candidates = {"ours": measured_law(table, mark, name, kind, draws, rng)}
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None

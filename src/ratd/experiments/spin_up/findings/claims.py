@@ -175,9 +175,8 @@ def grown_claims(grown):
     smallest = np.isclose(grown["nm"], FIGURE_6[0])
     for name, part in (("", grown), (" smallest", grown[smallest]), (" larger", grown[own_sizes & ~smallest])):
         share, error, *_ = oblate_share(part.rename(columns=_AS_START), "start")
-        values[f"g.oblate{name}"] = Measured(100 * share, 100 * error)
-        within = is_below(Measured(share, error), 0.5) if name == " larger" else None
-        values[f"g.holds oblate{name}"] = within or is_within(Measured(share, error), 0.45, 0.55)
+        found = values[f"g.oblate{name}"] = Measured(100 * share, 100 * error)
+        values[f"g.holds oblate{name}"] = is_below(found, 50.0) if name == " larger" else is_within(found, 45.0, 55.0)
     ba = grown[(grown["type"] == "BA") & (grown["fractal_dimension"] < 3)]
     values["g.dimension"] = median(ba["fractal_dimension"])
     values["g.holds dimension"] = is_within(values["g.dimension"], 1.9, 2.1)

@@ -291,9 +291,9 @@ def _other(name, table, ensemble):
 
 def _equal(tables, values):
     """Slots of both studies of equal monomers together."""
-    compact = [
-        value for name, value in values.items() if name.startswith(EQUAL) and name.endswith(" nm filling_factor")
-    ]
+    sizes = np.unique(np.round(tables[EQUAL[0]]["a_eff"] / NM))
+    keys = [f"{name}.{kind} {size:.0f} nm" for name in EQUAL for kind in TYPES for size in sizes]
+    compact = [values[f"{key} filling_factor"] for key in keys]
     found = {"equal.holds compact": all_of(is_below(ratio, 1.0) for ratio in compact)}
     small, large = (tables[name] for name in EQUAL)
     for kind, part in _parts(large):
