@@ -41,6 +41,7 @@ _HOME = {
     "mrn": "aggregates.mrn",
     "open_space": "geometry.box",
     "periodic": "geometry.box",
+    "read_materials": "pipeline.config",
     "read_particles": "aggregates.particles",
     "spin_up": "experiments.spin_up.run",
     "stretch": "experiments.compression.stretch",

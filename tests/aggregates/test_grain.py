@@ -75,8 +75,18 @@ def test_overlapping_monomers_are_refused(compression):
 def test_an_aggregate_in_two_pieces_is_refused():
     position, radius = chain(5)
     position[3:, 0] += 1.2 * DELTA_0
-    with pytest.raises(InputError, match="in 2 pieces; it must be in one"):
+    gap = position[3, 0] - position[2, 0] - 40e-9
+    with pytest.raises(InputError, match="in 2 pieces; it must be in one") as error:
         Grain(position, radius, "q-S")
+    assert f"the nearest of different pieces: the gap between them is {gap:.3g} m" in str(error.value)
+    assert "Monomers 2 and 3, counted from 0," in str(error.value)
+    assert f"less than {0.1 * DELTA_0:.3g} m." in str(error.value)
+
+
+def test_of_many_pieces_the_nearest_are_named():
+    position = np.array([[0, 0, 0], [100e-9, 0, 0], [100e-9, 45e-9, 0], [0, 90e-9, 0]])
+    with pytest.raises(InputError, match="in 4 pieces.* Monomers 1 and 2, .* is 1e-09 m"):
+        Grain(position, [20e-9, 34e-9, 10e-9, 5e-9], "q-S")
 
 
 def test_one_monomer_inside_another_is_refused():

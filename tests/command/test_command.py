@@ -56,6 +56,26 @@ def test_an_aggregate_is_spun_up_from_its_file(chain):
     assert chain.with_name("again.png").exists()
 
 
+def test_a_material_of_ones_own_stands_in_a_file(chain, tmp_path):
+    own = tmp_path / "own.yaml"
+    grow = "{{surface_energy_mJ_m2: {}, youngs_modulus_GPa: 54, poisson_number: 0.17, density_kg_m3: 2650}}"
+    own.write_text(f"same: {grow.format(20)}\nfirm: {grow.format(40)}\n")
+    assert ratd.read_materials(own)["firm"].surface_energy == pytest.approx(0.04)
+    omega = {}
+    for name in ("q-S", "same", "firm"):
+        how = ("--material", name, "--epsilon", "1", "--starts", "1", "--out", tmp_path / name)
+        done = run("spin-up", chain, "--materials-file", own, *how)
+        assert done.exit_code == 0, done.output
+        (found,) = run_files.read_runs(tmp_path / f"{name}.nc")
+        assert found.attrs["material"] == name
+        omega[name] = float(ratd.disruption(found)["omega_disr"])
+    assert omega["q-S"] == omega["same"] < omega["firm"]
+    # the same name with other numbers is another material
+    own.write_text(f"same: {grow.format(30)}\n")
+    done = run("spin-up", chain, "--materials-file", own, *how[2:], "--material", "same", "--out", tmp_path / "same")
+    assert done.exit_code == 1 and "holds runs of another aggregate, other settings" in done.stderr
+
+
 def test_a_cluster_is_compressed_from_its_file(tmp_path):
     cluster = tmp_path / "cluster.xyz"
     write_particles(ratd.grow_bcca(32, material="ice", seed=1), cluster)
@@ -288,7 +308,10 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
     [
         (("spin-up", "none.xyz", *FAST), "error: none.xyz: cannot be read"),
         (("spin-up", "{bare}", *FAST, "--unit", "m"), "those in nm would: give that as the unit"),
-        (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not one of 'a-C'"),
+        (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not a material; allowed: a-C, q-S"),
+        (("show", "{chain}", "--material", "ice", "--materials-file", "none.yaml"), "none.yaml: cannot be read"),
+        (("spin-up", "{micron}", *FAST), "micron.txt: read in nm: radius has the median 1e-10"),
+        (("spin-up", "{micron}", *FAST), "those in um would: give that as the unit"),
         (("spin-up", "{apart}", *FAST), "apart.txt: The aggregate is in 2 pieces"),
         (("spin-up", "{chain}", *FAST, "--unit", "um"), "states that its lengths are in nm, and was to be read in um"),
         (("spin-up", "{chain}", *FAST, "--out", ""), "is a folder; allowed: a stem in it"),
@@ -302,7 +325,8 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
 def test_what_is_wrong_is_said_in_one_sentence(chain, arguments, said):
     chain.with_name("apart.txt").write_text("0 0 0 20\n0 0 50 20\n")
     chain.with_name("bare.txt").write_text("0 0 0 20\n0 0 40 20\n")
-    names = {"chain": str(chain), **{name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare")}}
+    chain.with_name("micron.txt").write_text("0 0 0 0.1\n0 0 0.2 0.1\n")
+    names = {name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare", "micron")} | {"chain": str(chain)}
     done = run(*[argument.format(**names) for argument in arguments])
     assert done.exit_code != 0 and said in done.output and "Traceback" not in done.output
 

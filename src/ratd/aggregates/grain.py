@@ -110,8 +110,8 @@ class Grain:
         self.seed = seed
         _check_arrays(self.position, self.radius)
         self.contacts, gap = _contacts(self.position, self.radius, self.material)
-        _check_overlap(self.contacts, gap)
-        _check_one_piece(self.position, self.radius, self.contacts)
+        _check_overlap(self.radius, self.material, self.contacts, gap)
+        _check_one_piece(self.position, self.radius, self.material, self.contacts)
         if not (a_eff is None or is_number(a_eff)):
             raise InputError(f"a_eff is {a_eff!r}; it must be a number in m, or None.")
         self.a_eff = self.effective_radius if a_eff is None else float(a_eff)
@@ -177,29 +177,60 @@ def _check_arrays(position, radius):
 
 def _contacts(position, radius, material):
     """Pairs of monomers that touch, (k, 2) int64, i < j, sorted, and their gaps in equilibrium compressions, (k,)."""
-    constants = material.surface_energy, material.reduced_modulus
-    largest = float(np.max(radius))
-    widest = equilibrium_compression(reduced_radius(largest, largest), *constants)
-    near = close_pairs(position, radius, GAP_TOLERANCE * widest)
-    gap = gaps(position, radius, near, *constants)
+    near = close_pairs(position, radius, GAP_TOLERANCE * _widest(radius, material))
+    gap = gaps(position, radius, near, material.surface_energy, material.reduced_modulus)
     touch = gap < GAP_TOLERANCE
     return near[touch], gap[touch]
 
 
-def _check_overlap(contacts, gap):
+def _widest(radius, material):
+    """Equilibrium compression of two of the largest monomers [m]."""
+    return _compression(*np.full(2, np.max(radius)), material)
+
+
+def _compression(a, b, material):
+    """Equilibrium compression of two monomers of radii `a` and `b` [m]."""
+    return equilibrium_compression(reduced_radius(a, b), material.surface_energy, material.reduced_modulus)
+
+
+def _check_overlap(radius, material, contacts, gap):
     if np.any(gap < -OVERLAP_TOLERANCE):
         worst = int(np.argmin(gap))
         i, j = contacts[worst]
+        unit = _compression(radius[i], radius[j], material)
         raise InputError(
-            f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions; at most "
-            f"{OVERLAP_TOLERANCE:g} are allowed. Are all lengths in m?"
+            f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions, {-gap[worst] * unit:.3g} m; "
+            f"at most {OVERLAP_TOLERANCE:g} are allowed, {OVERLAP_TOLERANCE * unit:.3g} m. Are all lengths in m? "
+            "Monomers are counted from 0."
         )
 
 
-def _check_one_piece(position, radius, contacts):
-    pieces = int(connected_components(len(radius), contacts).max()) + 1
+def _check_one_piece(position, radius, material, contacts):
+    label = connected_components(len(radius), contacts)
+    pieces = int(label.max()) + 1
     if pieces > 1:
+        hint = far_apart(position, radius)
         raise InputError(
             f"The aggregate is in {pieces} pieces; it must be in one, where monomers touch if the gap between them "
-            f"is less than {GAP_TOLERANCE:g} equilibrium compressions.{far_apart(position, radius)}"
+            f"is less than {GAP_TOLERANCE:g} equilibrium compressions."
+            f"{hint or _nearest_of_two_pieces(position, radius, material, label)}"
         )
+
+
+def _nearest_of_two_pieces(position, radius, material, label):
+    """Sentence with the two monomers of different pieces that are nearest, for a message."""
+    reach = GAP_TOLERANCE * _widest(radius, material)
+    i = np.empty(0, np.int64)
+    while not i.size:
+        reach *= 4.0
+        i, j = close_pairs(position, radius, reach).T
+        apart = label[i] != label[j]
+        i, j = i[apart], j[apart]
+    distance = np.linalg.norm(position[i] - position[j], axis=1) - radius[i] - radius[j]
+    nearest = np.argmin(distance)
+    i, j = i[nearest], j[nearest]
+    allowed = GAP_TOLERANCE * _compression(radius[i], radius[j], material)
+    return (
+        f" Monomers {i} and {j}, counted from 0, are the nearest of different pieces: the gap between them is "
+        f"{distance[nearest]:.3g} m and would have to be less than {allowed:.3g} m."
+    )

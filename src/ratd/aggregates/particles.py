@@ -97,7 +97,7 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         missing = [name for name in ("x", "y", "z", "radius") if name not in table]
         if missing:
             raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}")
-        values = table[["x", "y", "z", "radius"]].to_numpy(dtype=float)
+        values = np.stack([_numbers(table[name], name) for name in ("x", "y", "z", "radius")], axis=1)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, IndexError, KeyError, TypeError, UnicodeDecodeError) as error:
@@ -122,6 +122,17 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     _check_unit(path, unit, values[:, 3])
     values = values * factor
     return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
+
+
+def _numbers(column, name):
+    """A column as numbers; ValueError with the first that is none."""
+    numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
+    # what is empty, or says itself that it is no number, is told with its sphere
+    wrong = np.flatnonzero(np.isnan(numbers) & column.notna().to_numpy())
+    wrong = [k for k in wrong if str(column.iloc[k]).strip().lower() != "nan"]
+    if wrong:
+        raise ValueError(f"{name} of sphere {wrong[0] + 1} is {column.iloc[wrong[0]]!r}, which is no number")
+    return numbers
 
 
 def _path(path):

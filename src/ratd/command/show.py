@@ -10,8 +10,7 @@ from matplotlib.colors import to_rgb
 from ratd.aggregates.files import read_grains
 from ratd.aggregates.particles import read_particles
 from ratd.base.errors import InputError
-from ratd.base.materials import MATERIALS
-from ratd.experiments.command import out_option, unit_option
+from ratd.experiments.command import material_options, out_option, unit_option
 from ratd.experiments.saved import kind_in
 from ratd.geometry.shape import Shape, centre_of_mass
 from ratd.pictures.snapshots import OTHERS
@@ -27,7 +26,7 @@ VIEW, UP = (0.75, -0.55, 0.37), (0.0, 0.0, 1.0)
 @click.command("show")
 @click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
 @unit_option()
-@click.option("--material", type=click.Choice(list(MATERIALS)), help="Of a file of spheres: counts its contacts.")
+@material_options("Of a file of spheres, to count its contacts")
 @out_option("that of FILE")
 def command(file, unit, material, out):
     """Show what is in FILE: spheres, or results of ratd."""

@@ -10,18 +10,20 @@ import time
 from pathlib import Path
 
 import click
+import numba
 import numpy as np
 
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import UNITS, read_particles
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
-from ratd.base.materials import MATERIALS
+from ratd.base.materials import MATERIALS, Material
 from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic
 from ratd.pipeline.blocks import rows
+from ratd.pipeline.config import read_materials
 from ratd.pipeline.partial import Block, Pieces, locked
 
 __all__ = [
@@ -29,6 +31,7 @@ __all__ = [
     "aggregate",
     "aggregate_options",
     "answer",
+    "material_options",
     "moved",
     "out_option",
     "progress_bar",
@@ -53,13 +56,54 @@ class Finite(click.FloatRange):
         return number
 
 
+class _OfMaterials(click.ParamType):
+    """The name of a material, of ratd or of the file of the user's own, see `material_options`."""
+
+    name = "name"
+
+    def convert(self, value, param, ctx):
+        table = ctx.meta.get(__name__, MATERIALS)
+        if not isinstance(value, Material) and value not in table:
+            own = "" if __name__ in ctx.meta else ", or one of your own in --materials-file"
+            self.fail(f"{value!r} is not a material; allowed: {', '.join(table)}{own}", param, ctx)
+        return value if isinstance(value, Material) else table[value]
+
+
+def material_options(use, required=False):
+    """The options that say what the monomers are made of, a decorator; the command gets a `Material`.
+
+    Parameters
+    ----------
+    use : str
+        What the material is of.
+    required : bool, optional
+    """
+
+    def own(context, parameter, path):
+        if path is not None:
+            context.meta[__name__] = read_materials(path)
+
+    def decorate(function):
+        # the file is read first, wherever it stands on the line
+        file = click.option(
+            "--materials-file", type=click.Path(path_type=Path), callback=own, is_eager=True, expose_value=False,
+            help="YAML with materials of your own, as config/materials.yaml.",
+        )  # fmt: skip
+        material = click.option(
+            "--material", required=required, type=_OfMaterials(), help=f"{use}: {', '.join(MATERIALS)}, or your own."
+        )
+        return material(file(function))
+
+    return decorate
+
+
 def aggregate_options(function):
     """Arguments and options that say which aggregate is meant, of what, and how often; a decorator."""
     for decorate in (
         out_option("that of FILE and what is done"),
         click.option("--starts", default=5, show_default=True, type=click.IntRange(1, 1000), help="Number of starts."),
         unit_option(),
-        click.option("--material", required=True, type=click.Choice(list(MATERIALS)), help="Of all monomers."),
+        material_options("Of all monomers", required=True),
         click.argument("file", type=click.Path(path_type=Path, dir_okay=False)),
     ):
         function = decorate(function)
@@ -94,7 +138,7 @@ def aggregate(path, unit, material):
     ----------
     path : path-like
     unit : str or None
-    material : str
+    material : Material
 
     Returns
     -------
@@ -185,12 +229,16 @@ def several(target, kind, material, provenance, starts, make):
             f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
             "finish them with their own command, remove the folder, or give another --out."
         )
+    ran = Path(numba.config.CACHE_DIR) / f"{kind}.ran"
+    if not ran.exists():
+        click.echo("The first call of a new version compiles, which takes a minute or two.")
     with locked(block.folder / "lock", click.echo):
         # the same command may have ended while this one waited
         there = _starts_there(block, kind)
         try:
             if there < starts:
                 _make_starts(block, kind, there, make)
+                ran.touch()
         except (InputError, RuntimeError):
             # what failed will do so again: only finished starts are worth keeping
             if not any(block.folder.glob("seed_*.nc")):

@@ -24,6 +24,7 @@ _Validator = jsonschema.validators.extend(
 OWN_FOLDERS = ("benchmarks", "config", "docs", "examples", "profiles", "src", "tests", "workflow")
 """Folders of the project, in which no results may lie."""
 
+_MATERIALS_LAYOUT = Path(__file__).with_name("materials.schema.yaml")
 _MATERIAL_KEYS = {
     "surface_energy_mJ_m2": ("surface_energy", MJ_PER_M2),
     "youngs_modulus_GPa": ("youngs_modulus", GPA),
@@ -168,15 +169,13 @@ def _dotted(path):
     return text.removeprefix(".")
 
 
-def read_materials(path, layout):
-    """Materials of Table 2 together with those of a file.
+def read_materials(path):
+    """The materials of ratd together with those of a file.
 
     Parameters
     ----------
     path : path-like
-        Such as `config/materials.yaml`.
-    layout : dict
-        Its JSON schema.
+        Such as `config/materials.yaml`; what it may hold stands in `src/ratd/pipeline/materials.schema.yaml`.
 
     Returns
     -------
@@ -188,11 +187,11 @@ def read_materials(path, layout):
         One sentence with the file, the material and the key.
     """
     content = read_yaml(path)
-    check_layout(content, layout, str(path))
+    check_layout(content, read_yaml(_MATERIALS_LAYOUT), str(path))
     table = dict(MATERIALS)
     for name, entry in (content or {}).items():
         if name in MATERIALS:
-            raise InputError(f"{path}: {name!r} is a material of Table 2 already; allowed: any other name")
+            raise InputError(f"{path}: {name!r} is a material of ratd already; allowed: any other name")
         try:
             if "mix" in entry:
                 table[name] = mix(name, entry["mix"], table)
@@ -277,7 +276,7 @@ def section(config, name, schemas="config/schema"):
     own : dict
         The keys of the experiment.
     materials : dict of str to Material
-        Table 2 and the materials of the user.
+        Those of ratd and of the user.
 
     Raises
     ------
@@ -295,16 +294,16 @@ def section(config, name, schemas="config/schema"):
         lambda: check_layout(config, layout, "config"),
         lambda: check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,)),
         lambda: check_results_folder(shared.get("results")),
-        lambda: _materials_of(shared.get("materials_file"), schemas),
+        lambda: _materials_of(shared.get("materials_file")),
     )
     shared["results"] = shared["results"].rstrip("/") or "/"
     return shared, own, materials
 
 
-def _materials_of(path, schemas):
+def _materials_of(path):
     """Materials of the user's file; a path that is none is told by the schema."""
     if isinstance(path, str):
-        return read_materials(path, read_yaml(schemas / "materials.schema.yaml"))
+        return read_materials(path)
 
 
 def base(name, schemas="config/schema"):

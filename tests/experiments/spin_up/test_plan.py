@@ -507,7 +507,7 @@ def materials_file(tmp_path, text):
     return {"materials_file": str(file)}
 
 
-def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
+def test_materials_of_the_user_stand_beside_those_of_ratd(tmp_path):
     snow = f"snow: {{{ICE}}}\n"
     half = "half: {mix: {snow: 0.5, q-S: 0.5}}\n"
     plan = with_changes(materials_file(tmp_path, snow + half) | {"materials": ["snow", "half", *MATERIALS_OF_FIGURES]})
@@ -520,7 +520,7 @@ def test_materials_of_the_user_stand_beside_those_of_table_2(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of Table 2 already"),
+        ("q-S: {mix: {a-C: 1.0}}\n", "'q-S' is a material of ratd already"),
         ("a/b: {mix: {a-C: 1.0}}\n", "the key 'a/b' is no name; allowed: a name of letters"),
         ("snow: {density_kg_m3: 1000, poisson_number: 0.2, youngs_modulus_GPa: 1}\n", "snow.surface_energy_mJ_m2 is"),
         (

@@ -1,13 +1,13 @@
 """``python -m ratd collide``: what is left of an aggregate from a file that hits itself, or another one."""
 
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 import numpy as np
 
 from ratd.base.errors import InputError
-from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.collision.figures.snapshots import PANELS, origin_of, picture, positions
 from ratd.experiments.collision.files import collision_row
@@ -60,7 +60,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     how = {"velocity": velocity, "impact_parameter": impact_parameter, "law": law, "duration": duration}
     how |= {} if timestep is None else {"timestep": timestep}
     source = source_hash(modules=["ratd.experiments.collision.run", *OF_STARTS])
-    made_with = provenance(source, {"material": material, "unit": unit, **how}, files)
+    made_with = provenance(source, {"material": asdict(material), "unit": unit, **how}, files)
     contact = contact_of(law_of(law, dmt))
     resting = []
 
@@ -89,7 +89,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
         )
 
     target = out.with_name(f"{out.name}.nc")
-    several(target, "collisions", MATERIALS[material], made_with, starts, make)
+    several(target, "collisions", material, made_with, starts, make)
     click.echo("\n".join([*show(target, out), f"{target} written"]))
 
 

@@ -1,12 +1,12 @@
 """``python -m ratd compress``: the pressure that it takes to compress an aggregate from a file."""
 
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 import numpy as np
 
-from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import (
     OF_STARTS,
@@ -56,7 +56,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
     """
     given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_compressed") if out is None else out
-    settings = {"material": material, "unit": unit, "strain_rate": strain_rate, "until_phi": until_phi}
+    settings = {"material": asdict(material), "unit": unit, "strain_rate": strain_rate, "until_phi": until_phi}
     made_with = provenance(source_hash(modules=["ratd.experiments.compression.run", *OF_STARTS]), settings, [file])
 
     def make(start, checkpoint, progress):
@@ -73,7 +73,7 @@ def command(file, material, unit, starts, out, strain_rate, until_phi):
         return run_row(run)
 
     target = out.with_name(f"{out.name}.nc")
-    several(target, "compression", MATERIALS[material], made_with, starts, make)
+    several(target, "compression", material, made_with, starts, make)
     click.echo("\n".join([*show(target, out), f"{target} written"]))
 
 

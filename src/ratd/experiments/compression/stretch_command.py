@@ -1,13 +1,13 @@
 """``python -m ratd stretch``: the tensile strength of an aggregate from a file."""
 
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 import numpy as np
 
 from ratd.aggregates.strength import tensile_strength_tatsuuma2019
-from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import (
     OF_STARTS,
@@ -54,7 +54,7 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
     """
     given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_stretched") if out is None else out
-    settings = {"material": material, "unit": unit, "phi": phi, "strain_rate": strain_rate}
+    settings = {"material": asdict(material), "unit": unit, "phi": phi, "strain_rate": strain_rate}
     settings |= {"axes": axes, "unload": unload}
     made_with = provenance(source_hash(modules=["ratd.experiments.compression.stretch", *OF_STARTS]), settings, [file])
 
@@ -70,7 +70,7 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
         return stretched_row(stretch(pressed, strain_rate, **how))
 
     target = out.with_name(f"{out.name}.nc")
-    several(target, "stretched", MATERIALS[material], made_with, starts, make)
+    several(target, "stretched", material, made_with, starts, make)
     click.echo("\n".join([*show(target, out), f"{target} written"]))
 
 

@@ -1,11 +1,11 @@
 """``python -m ratd spin-up``: the angular velocity at which an aggregate from a file comes apart."""
 
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 
-from ratd.base.materials import MATERIALS
 from ratd.base.words import plural
 from ratd.experiments.command import (
     OF_STARTS,
@@ -53,7 +53,7 @@ def command(file, material, unit, starts, out, epsilon):
     """
     given = aggregate(file, unit, material)
     out = file.with_name(f"{file.stem}_spin_up") if out is None else out
-    settings = {"material": material, "unit": unit, "epsilon": epsilon}
+    settings = {"material": asdict(material), "unit": unit, "epsilon": epsilon}
     made_with = provenance(source_hash(modules=["ratd.experiments.spin_up.run", *OF_STARTS]), settings, [file])
 
     def make(start, checkpoint, progress):
@@ -70,7 +70,7 @@ def command(file, material, unit, starts, out, epsilon):
         )
 
     target = out.with_name(f"{out.name}.nc")
-    several(target, "spinup", MATERIALS[material], made_with, starts, make)
+    several(target, "spinup", material, made_with, starts, make)
     click.echo("\n".join([*show(target, out), f"{target} written"]))
 
 
