@@ -158,6 +158,24 @@ def test_a_law_of_the_ensemble_holds_for_equal_monomers_with_the_right_mean_radi
                 assert wrong.value == pytest.approx(right.value * np.sqrt(35 / 30), rel=1e-3)
         assert values[f"equal.{mark} mean"] == "<a²>^(1/2)"
         assert values[f"equal.{mark} chi2 2"] < 20.0 < values[f"equal.{mark} chi2 1"]
+    # and at each size by itself
+    n = values["equal.sizes"]
+    assert values["equal.sizes chi2 2"] < n + 4 * np.sqrt(2 * n) < values["equal.sizes chi2 1"]
+
+
+def test_a_law_that_holds_in_the_mean_of_sizes_alone_is_far_off_at_each(tables):
+    """omega of equal monomers that rises with size where that of the ensemble does not."""
+    turned = {}
+    for name in ("equal_30nm", "equal_41nm"):
+        size = tables[name]["a_eff"] / np.exp(np.log(tables[name]["a_eff"]).mean())
+        turned[name] = tables[name].assign(omega_mass_75=tables[name]["omega_mass_75"] * size)
+    values = of_studies(tables | turned)
+    n = values["equal.sizes"]
+    assert values["equal.omega_mass_75 chi2 2"] < 20.0 and values["equal.sizes chi2 2"] > 10 * n
+    below, above = (
+        values[f"equal_30nm.BA {size / 1e-9:.0f} nm omega_mass_75 law 2"].value for size in SIZES[:: len(SIZES) - 1]
+    )
+    assert above / below == pytest.approx(SIZES[-1] / SIZES[0], rel=0.15)
 
 
 def test_how_omega_goes_with_the_radius_of_equal_monomers(values):

@@ -156,33 +156,48 @@ def cell_ratio(table, beside, column):
     return Measured(ratio, ratio * float(np.hypot(error, other)))
 
 
-def carried_over(table, beside, mark, k):
-    """A mark over what Eq. 33, with its exponent fitted to other grains, says of it.
+def exponent(table, beside, mark, k):
+    """alpha of Eq. 33 as grains of the same cells as others have it.
 
     Parameters
     ----------
     table, beside : pandas.DataFrame
-        Of one type, with n_contacts, filling_factor, radius_k [m] and the mark.
+        The others, and those that it is fitted to: of one type, with n_contacts, filling_factor, radius_k [m] and the
+        mark.
     mark : str
     k : int
         Of `POWERS`: <a_mon> in Eq. 33 is <a^k>^(1/k).
 
     Returns
     -------
-    ratio : Measured
-        As `cell_ratio` of omega a_eff sqrt(<a_mon>)/(N_con phi)^alpha; 1 where the law holds for both.
-    alpha : Measured
-        Fitted to the grains of `beside` in the cells of both.
+    Measured
     """
     beside = beside[_in_cells_of(beside, table)]
     x, y = _law(beside, mark, k)
     there = np.isfinite(x + y)
     size = size_key(beside["a_eff"]).to_numpy()[there]
     alpha, influence = slope_of(x[there], y[there], beside["material"].to_numpy()[there], equal_weights(size))
-    first, second = (_levelled(own, mark, k, alpha) for own in (table, beside))
+    return Measured(alpha, slope_error(influence))
+
+
+def carried_over(table, beside, mark, k, alpha):
+    """A mark over what Eq. 33, with its exponent fitted to other grains, says of it.
+
+    Parameters
+    ----------
+    table, beside, mark, k
+        As for `exponent`.
+    alpha : Measured
+        From `exponent`.
+
+    Returns
+    -------
+    Measured
+        As `cell_ratio` of omega a_eff sqrt(<a_mon>)/(N_con phi)^alpha; 1 where the law holds for both.
+    """
+    first, second = (_levelled(own, mark, k, alpha.value) for own in (table, beside))
     ratio, lever = cell_ratio(first, second, "level"), np.log(cell_ratio(first, second, "lever").value)
-    alpha = Measured(alpha, slope_error(influence))
-    return Measured(ratio.value, float(np.hypot(ratio.error, ratio.value * lever * alpha.error))), alpha
+    return Measured(ratio.value, float(np.hypot(ratio.error, ratio.value * lever * alpha.error)))
 
 
 def _law(table, mark, k):
@@ -219,7 +234,8 @@ def of_studies(tables):
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
         with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours at every
-        size. For other monomers also ``TYPE SIZE nm`` for the filling factor and a quarter.
+        size. For other monomers also ``TYPE SIZE nm`` for the filling factor, a quarter, and ``law k`` of a quarter,
+        with ``equal.sizes`` and ``equal.sizes chi2 k``, the number of these ratios and how far off they are.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -283,9 +299,15 @@ def _other(name, table, ensemble):
     for mark in MARKS:
         for k in POWERS:
             for kind in TYPES:
-                own = (each[each["type"] == kind] for each in (table, ensemble))
-                values[f"{name}.{kind} {mark} law {k}"], alpha = carried_over(*own, mark, k)
+                own, beside = (each[each["type"] == kind] for each in (table, ensemble))
+                alpha = exponent(own, beside, mark, k)
                 values[f"law.{kind} {mark} alpha {k}"] = alpha
+                values[f"{name}.{kind} {mark} law {k}"] = carried_over(own, beside, mark, k, alpha)
+                if mark != "omega_mass_75":
+                    continue
+                for size, part in own.groupby(np.round(own["a_eff"] / NM)):
+                    found = carried_over(part, beside, mark, k, alpha)
+                    values[f"{name}.{kind} {size:.0f} nm {mark} law {k}"] = found
     return values
 
 
@@ -305,9 +327,16 @@ def _equal(tables, values):
     for mark in MARKS:
         off = {}
         for k in POWERS:
-            ratios = [values[f"{name}.{kind} {mark} law {k}"] for name in EQUAL for kind in TYPES]
-            off[k] = sum((np.log(ratio.value) * ratio.value / ratio.error) ** 2 for ratio in ratios)
-            found[f"equal.{mark} chi2 {k}"] = float(off[k])
+            off[k] = _off([values[f"{name}.{kind} {mark} law {k}"] for name in EQUAL for kind in TYPES])
+            found[f"equal.{mark} chi2 {k}"] = off[k]
         found[f"equal.{mark} mean"] = POWERS[min(off, key=off.get)]
         found[f"equal.{mark} worst"] = POWERS[max(off, key=off.get)]
+    found["equal.sizes"] = len(keys)
+    for k in POWERS:
+        found[f"equal.sizes chi2 {k}"] = _off([values[f"{key} omega_mass_75 law {k}"] for key in keys])
     return found
+
+
+def _off(ratios):
+    """Sum of the squared distances of the logarithms of ratios from 0, in squared errors."""
+    return float(sum((np.log(ratio.value) * ratio.value / ratio.error) ** 2 for ratio in ratios))
