@@ -103,8 +103,11 @@ def test_a_pair_that_starts_off_its_distance_may_vibrate(material):
     found = evolve(pair, [1e-7, 1e-7], material=material, duration=1e-8)
     stored = found["stored"].values.sum(axis=1)
     assert np.abs(stored - stored[0]).max() > 0.0
-    with pytest.raises(RuntimeError, match="take a smaller time step"):
+    with pytest.raises(RuntimeError, match="take a smaller time step") as ended:
         evolve(pair, [1e-7, 1e-7], material=material, duration=1e-8, balance=1e-4)
+    so_far = ended.value.run
+    assert 1 < so_far.sizes["record"] <= found.sizes["record"]
+    xr.testing.assert_equal(so_far["stored"], found["stored"][: so_far.sizes["record"]])
 
 
 def run(**options):

@@ -16,6 +16,7 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
+from ratd.experiments.unfinished import attached
 from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws.chosen import law_of
 from ratd.laws.jkr_with_springs import jkr
@@ -129,7 +130,7 @@ def evolve(
         If an argument is not usable, or two spheres overlap at the start by more than half of the smaller radius, or
         a contact is given of two that are apart.
     RuntimeError
-        If the integration fails, or leaves the balance of energy.
+        If the integration fails, or leaves the balance of energy; its attribute ``run`` holds the Dataset up to there.
     """
     position, radius, velocity, spin = _arrays(position, radius, velocity, spin)
     materials, kind = _materials(material, len(radius))
@@ -172,26 +173,27 @@ def evolve(
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
     moved = _moved(rows, rows[0])
-    while len(rows) <= records:
-        goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
-        state, code = run(state, law, drive, box, integrator, goal)
-        if code != STEPS_DONE:
-            rows.append(_row(state, law, box, rows[0]))
-            if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or len(rows) > records):
-                pictures.append(_picture(state))
-            moved = max(moved, _moved(rows[-1:], rows[0]))
-            # a vibration that has just begun has not moved all that it will: one record more tells
-            wait = 2 if len(rows) <= records else 1
-            if balance is not None and not drag and len(rows) > wait:
-                _check_balance(rows[-wait], moved, balance)
-        if checkpoint is not None and to_save.passed():
-            checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
-        if foresee is not None and foresee.passed():
-            now = state.scalar[TIME]
-            foresee = _warn_of_long(pace.to_go(duration - now, now), duration, state.scalar[DT])
-        if progress is not None and to_tell.passed():
-            now = state.scalar[TIME]
-            progress(now / duration, pace.to_go(duration - now, now), rows[-1])
+    with attached("run", lambda error: _dataset(state, rows, pictures, law, box)):
+        while len(rows) <= records:
+            goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
+            state, code = run(state, law, drive, box, integrator, goal)
+            if code != STEPS_DONE:
+                rows.append(_row(state, law, box, rows[0]))
+                if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or len(rows) > records):
+                    pictures.append(_picture(state))
+                moved = max(moved, _moved(rows[-1:], rows[0]))
+                # a vibration that has just begun has not moved all that it will: one record more tells
+                wait = 2 if len(rows) <= records else 1
+                if balance is not None and not drag and len(rows) > wait:
+                    _check_balance(rows[-wait], moved, balance)
+            if checkpoint is not None and to_save.passed():
+                checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
+            if foresee is not None and foresee.passed():
+                now = state.scalar[TIME]
+                foresee = _warn_of_long(pace.to_go(duration - now, now), duration, state.scalar[DT])
+            if progress is not None and to_tell.passed():
+                now = state.scalar[TIME]
+                progress(now / duration, pace.to_go(duration - now, now), rows[-1])
     _warn_of_passing(velocity, radius, state.scalar[DT])
     return _dataset(state, rows, pictures, law, box)
 

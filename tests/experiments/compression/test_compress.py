@@ -255,8 +255,14 @@ def test_snapshots_are_those_of_the_records_whatever_their_order(cluster):
 
 
 def test_a_step_that_bursts_the_cluster_is_an_error_also_while_it_is_loose(cluster):
-    with pytest.raises(RuntimeError, match="at phi = 0.0[0-9]+ the balance of energy is off by"):
-        ratd.compress(cluster, 1e-4, 0.09, timestep_factor=0.5, long_steps=None)
+    with pytest.raises(RuntimeError, match="at phi = 0.0[0-9]+ the balance of energy is off by") as ended:
+        ratd.compress(cluster, 1e-4, 0.09, timestep_factor=0.5, long_steps=None, snapshots=(0.0157, 0.089))
+    found = ended.value.run
+    assert (np.diff(found["phi"]) > 0).all() and f"phi = {found['phi'].values[-1]:.3g} " in str(ended.value)
+    whole = ratd.compress(cluster, 1e-4, 0.09, timestep_factor=0.5, long_steps=None, snapshots=(0.0157,), balance=False)
+    xr.testing.assert_equal(found["pressure"], whole["pressure"][: found.sizes["record"]])
+    assert 0 < found.sizes["record"] < whole.sizes["record"]
+    assert found.sizes["snapshot"] == 1 and set(found.attrs) == set(whole.attrs)
 
 
 def test_a_checkpoint_of_another_run_is_warned_of_and_another_file_is_kept(cluster, tmp_path, monkeypatch):
@@ -307,6 +313,14 @@ def test_a_pulled_cluster_comes_apart(run):
     assert pulled.attrs["phi_strength"] < pulled.attrs["phi_start"] == run["phi"].values[-1]
     # the tension falls once the cluster parts
     assert tension[-4:].mean() < 0.5 * pulled.attrs["tensile_strength"]
+
+
+def test_a_pull_that_leaves_the_balance_keeps_its_records(run, monkeypatch):
+    monkeypatch.setattr("ratd.experiments.compression.stretch.BALANCE", -1.0)
+    monkeypatch.setattr("ratd.experiments.compression.stretch.LONG_BALANCE", -1.0)
+    with pytest.raises(RuntimeError, match="the balance of energy is off by") as ended:
+        ratd.stretch(run, 3e-5)
+    assert ended.value.run.sizes["record"] == 1 and "tensile_strength" not in ended.value.run.attrs
 
 
 def test_the_inertia_of_a_pull_that_holds_nothing_is_warned_of(run):

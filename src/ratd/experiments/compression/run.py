@@ -17,6 +17,7 @@ from ratd.engine.state import new_state
 from ratd.experiments.compression.static import box_rate, static_from, time_unit
 from ratd.experiments.compression.steps import LongSteps, integrators
 from ratd.experiments.compression.strain import Parts, strain, strain_dataset
+from ratd.experiments.unfinished import attached
 from ratd.geometry.box import periodic, touching_pairs
 from ratd.geometry.shape import greatest_extent
 from ratd.laws.chosen import check_stiffness, law_of
@@ -167,7 +168,7 @@ def compress(
     InputError
         If an argument is not usable.
     RuntimeError
-        If the integration fails, or leaves the balance of energy: the records up to there are lost.
+        If the integration fails, or leaves the balance of energy; its attribute ``run`` holds the Dataset up to there.
 
     Warns
     -----
@@ -206,21 +207,25 @@ def compress(
 
     check = balance_check(BALANCE, LONG_BALANCE, REMEDY) if balance else None
     how = {"snapshots": wanted, "check": check, "tell": tell if progress else None, "later": later}
-    state, rows, kept = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
-    run = strain_dataset(state, rows, parts)
-    if later is not None:
-        run.attrs["integrator"] += f", from phi = {long_steps.until_phi:g} on {explicit!r}"
-    _add_snapshots(run, kept, wanted)
-    return run.assign_attrs(
-        {
-            **attributes(cluster),
-            "strain_rate": strain_rate,
-            "scheme": scheme,
-            "static_from": static,
-            "phi_start": first,
-            "radius_of_gyration": radius_of_gyration(cluster.grain.position, cluster.grain.mass),
-        }
-    )
+    about = {
+        **attributes(cluster),
+        "strain_rate": strain_rate,
+        "scheme": scheme,
+        "static_from": static,
+        "phi_start": first,
+        "radius_of_gyration": radius_of_gyration(cluster.grain.position, cluster.grain.mass),
+    }
+
+    def dataset(state, rows, kept):
+        run = strain_dataset(state, rows, parts)
+        if later is not None:
+            run.attrs["integrator"] += f", from phi = {long_steps.until_phi:g} on {explicit!r}"
+        _add_snapshots(run, kept, wanted[: len(kept)])
+        return run.assign_attrs(about)
+
+    with attached("run", lambda error: dataset(*error.reached)):
+        reached = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
+    return dataset(*reached)
 
 
 def compression_law():

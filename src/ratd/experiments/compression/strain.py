@@ -14,6 +14,7 @@ from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import FIELD_TYPES, State, monomer_rows
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
+from ratd.experiments.unfinished import attached
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
 
@@ -98,6 +99,11 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         Records, see `COLUMNS`; the first is that of the start, without a pressure.
     kept : (s, n, 3) float64 array
         Positions at the snapshots [m], unwrapped, in the order of the input.
+
+    Raises
+    ------
+    RuntimeError
+        If the integration fails, or `check` raises; its attribute ``reached`` has what would have been returned.
     """
     law, box, integrator = parts
     change, explicit = (math.inf, None) if later is None else later
@@ -111,32 +117,36 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
         rows, kept = list(tables["rows"]), list(tables["kept"])
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     pace = intervals.Pace(rows[-1][0])
-    for number in range(len(rows), len(marks) + 1):
-        if stop is not None and stop(np.array(rows)):
-            break
-        parts = parts._replace(integrator=integrator if number <= change else explicit)
-        long = isinstance(parts.integrator, SemiImplicit)
-        code = STEPS_DONE
-        while code == STEPS_DONE:  # so that Ctrl-C need not wait for a record
-            goal = until(time=marks[number - 1], steps=state.counter[STEPS] + CALL)
-            state, code = run(state, law, drive, box, parts.integrator, goal)
-        if number == change:
-            state = hand_over(state, law, drive, box, integrator, explicit)
-            parts = parts._replace(integrator=explicit)
-        rows.append(_row(state, parts, rows))
-        if number in snapshots:
-            kept.append(positions(state))
-        if check is not None:
-            # the first record has the energy at the start in place of a residual
-            before = as_dict(rows[change]) if number > change else as_dict(rows[0]) | {"energy_residual": 0.0}
-            check(as_dict(rows[-1]), before, long)
-        if checkpoint is not None and to_save.passed():
-            checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
-        if tell is not None and to_tell.passed():
-            now = rows[-1][0]
-            tell(as_dict(rows[-1]), pace.to_go(marks[-1] - now, now))
-    kept = np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
-    return state, np.array(rows), kept
+
+    def reached():
+        return state, np.array(rows), np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
+
+    with attached("reached", lambda error: reached()):
+        for number in range(len(rows), len(marks) + 1):
+            if stop is not None and stop(np.array(rows)):
+                break
+            parts = parts._replace(integrator=integrator if number <= change else explicit)
+            long = isinstance(parts.integrator, SemiImplicit)
+            code = STEPS_DONE
+            while code == STEPS_DONE:  # so that Ctrl-C need not wait for a record
+                goal = until(time=marks[number - 1], steps=state.counter[STEPS] + CALL)
+                state, code = run(state, law, drive, box, parts.integrator, goal)
+            if number == change:
+                state = hand_over(state, law, drive, box, integrator, explicit)
+                parts = parts._replace(integrator=explicit)
+            rows.append(_row(state, parts, rows))
+            if number in snapshots:
+                kept.append(positions(state))
+            if check is not None:
+                # the first record has the energy at the start in place of a residual
+                before = as_dict(rows[change]) if number > change else as_dict(rows[0]) | {"energy_residual": 0.0}
+                check(as_dict(rows[-1]), before, long)
+            if checkpoint is not None and to_save.passed():
+                checkpoints.save(checkpoint, key, state, rows=rows, kept=kept)
+            if tell is not None and to_tell.passed():
+                now = rows[-1][0]
+                tell(as_dict(rows[-1]), pace.to_go(marks[-1] - now, now))
+    return reached()
 
 
 def positions(state):

@@ -27,6 +27,7 @@ from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
 from ratd.experiments.evolve import touching_at_start
 from ratd.experiments.relax import find_rest, start_anew
+from ratd.experiments.unfinished import attached
 from ratd.geometry.box import periodic
 from ratd.geometry.shape import greatest_extent
 from ratd.laws.chosen import check_stiffness, law_of
@@ -100,7 +101,8 @@ def stretch(
         If an argument is not usable.
     RuntimeError
         If the aggregate does not come to rest, the integration fails, or leaves the balance of energy by more than
-        `BALANCE`, with long steps `LONG_BALANCE`.
+        `BALANCE`, with long steps `LONG_BALANCE`. Of a pull that has begun its attribute ``run`` then holds the
+        records, without a strength.
 
     References
     ----------
@@ -160,9 +162,9 @@ def stretch(
         return greatest > 0.0 and pull[-WINDOW:].mean() < FALLEN * greatest
 
     check = balance_check({0.0: BALANCE}, {0.0: LONG_BALANCE})
-    state, rows, _ = strain(
-        state, parts, marks, key=key, checkpoint=checkpoint, check=check, stop=done, tell=tell if progress else None
-    )
+    how = {"check": check, "stop": done, "tell": tell if progress else None}
+    with attached("run", lambda error: strain_dataset(*error.reached[:2], parts)):
+        state, rows, _ = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
     found = strain_dataset(state, rows, parts)
     pull = _smooth(tension(rows[1:], axes))
     best = int(np.argmax(pull))
