@@ -5,6 +5,7 @@ import subprocess
 import sys
 from importlib import import_module
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -54,6 +55,16 @@ def test_an_aggregate_is_spun_up_from_its_file(chain):
     again = run("show", chain.with_name("chain_spin_up.nc"), "--out", chain.with_name("again"))
     assert again.exit_code == 0 and said[0] in again.stdout
     assert chain.with_name("again.png").exists()
+
+
+def test_that_the_first_call_compiles_is_said_once(chain, tmp_path, monkeypatch):
+    for folder, said in ((tmp_path / "cache", [True, False]), (tmp_path / "none", [True, True])):
+        (tmp_path / "cache").mkdir(exist_ok=True)
+        monkeypatch.setattr(numba.config, "CACHE_DIR", str(folder))
+        for start, told in enumerate(said):
+            how = ("--material", "q-S", "--epsilon", "1", "--starts", "1", "--out", tmp_path / f"{folder.name}{start}")
+            done = run("spin-up", chain, *how)
+            assert done.exit_code == 0 and ("compiles, which takes a minute" in done.stdout) == told
 
 
 def test_a_material_of_ones_own_stands_in_a_file(chain, tmp_path):

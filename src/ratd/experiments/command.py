@@ -7,6 +7,7 @@ So each answer is that of several starts, whose scatter is its uncertainty.
 import math
 import shutil
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -238,7 +239,8 @@ def several(target, kind, material, provenance, starts, make):
         try:
             if there < starts:
                 _make_starts(block, kind, there, make)
-                ran.touch()
+                with suppress(OSError):  # of a cache that cannot be written
+                    ran.touch()
         except (InputError, RuntimeError):
             # what failed will do so again: only finished starts are worth keeping
             if not any(block.folder.glob("seed_*.nc")):
