@@ -54,7 +54,8 @@ class Goal(NamedTuple):
     def found(self):
         """The value, with its range where it is projected."""
         text = f"{self.value:.3g}"
-        return text if self.low is None else f"projected {text} ({self.low:.3g}–{self.high:.3g})"
+        # what was measured in every part has no range
+        return text if self.low == self.high else f"projected {text} ({self.low:.3g}–{self.high:.3g})"
 
 
 def goals(out):

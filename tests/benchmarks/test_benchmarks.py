@@ -187,6 +187,7 @@ def test_goals_are_compared_with_what_was_measured(benchmarks, tmp_path):
         (True, 60.0, (), "60", "missed by a factor of 1.20"),
         (False, 40.0, (), "40", "missed by a factor of 1.25"),
         (True, 40.0, (35.0, 45.0), "projected 40 (35–45)", "met"),
+        (True, 40.0, (40.0, 40.0), "40", "met"),
         (True, 51.0, (45.0, 60.0), "projected 51 (45–60)", "left open"),
         (True, 80.0, (60.0, 100.0), "projected 80 (60–100)", "missed by a factor of 1.20 to 2.00"),
     ],
