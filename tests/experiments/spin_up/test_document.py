@@ -105,6 +105,9 @@ def test_grains_above_their_firm_bound_are_counted():
     assert values["bound.largest below"] == 100.0
     assert values["bound.load"] == pytest.approx(0.5 * ((1e9 / 5e8) ** 2 + (1e9 / 2e9) ** 2))
     assert values["bound.over firm"] == 0
+    # the printed 1e9 is above the bound of the large ones; with all held four times as long as it, above none
+    beyond = table.assign(omega_first_loss=4.0 * firm["firm_bound"], firm_bound=firm["firm_bound"])
+    assert what_contacts_hold(beyond, firm, table)["bound.above farthest"] == 0
     assert values["bound.BA large omega_mass_75"].value == pytest.approx(0.2)
 
 
@@ -261,4 +264,8 @@ def test_the_rolling_limit_is_judged_at_all_its_values(data):
 def test_grains_in_strong_light_are_beside_the_heat_that_parts_contacts():
     assert of_heat(1e-7)["thermal.grain is"] == "below both"
     warm = of_heat(1e-7, 1e6)
+    cold = of_heat(1e-7)
+    assert 0.0 < cold["thermal.grain 10 nm omega"] < cold["thermal.grain 30 nm omega"] < 1.0
+    assert warm["thermal.grain 30 nm omega"] < cold["thermal.grain 30 nm omega"]
+    assert cold["thermal.grain 30 nm omega"] < np.sqrt(cold["thermal.light JKR 30 nm pull 20 K"])
     assert warm["thermal.grain"] == pytest.approx(164.0) and warm["thermal.grain is"] == "between the two"

@@ -234,7 +234,8 @@ def of_heat(size, strength=100.0):
     ----------
     size : float
         Of the smallest grain that light of a strength U tears [m]: the same for the time that this takes, ``thermal.
-        light``, beside an hour.
+        light``, beside an hour; ``thermal.grain RADIUS nm omega`` is the share of its omega that a grain of contacts
+        such as these keeps at the temperature that it has there.
     strength : float
     """
     quartz = get_material("q-S")
@@ -247,6 +248,9 @@ def of_heat(size, strength=100.0):
             values[f"{start} life"] = row["life_temperature"]
             values[f"{start} kT {row['temperature']:.0f} K"] = row["barrier_kT"]
             values[f"{start} pull {row['temperature']:.0f} K"] = row["pull_off"]
+    warm = thermal.table(("q-S",), temperatures=(values["thermal.grain"],), duration=time)
+    for row in warm[warm["law"] == "JKR"].to_dict("records"):
+        values[f"thermal.grain {row['radius'] / NM:.0f} nm omega"] = row["omega"]
     lives = [values[f"thermal.light JKR {radius} nm life"] for radius in (10, 30)]
     below = sum(values["thermal.grain"] < life for life in lives)
     return values | {"thermal.grain is": ("above both", "between the two", "below both")[below]}

@@ -215,7 +215,10 @@ def what_contacts_hold(grown, firm, table):
     }
     beyond = table.loc[table["omega_first_loss"] > table["firm_bound"], "type"]
     values["bound.over firm"] = len(beyond)
-    values["bound.over firm most"] = float((table["omega_first_loss"] / table["firm_bound"]).max())
+    farthest = float((table["omega_first_loss"] / table["firm_bound"]).max())
+    values["bound.over firm most"] = farthest
+    # the printed omega above what even the grain that holds longest would bear
+    values["bound.above farthest"] = int((grown["printed"] > farthest * grown["firm_bound"]).sum())
     values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond == kind).any())
     strength = strength_omega(table)
     for kind in TYPES:

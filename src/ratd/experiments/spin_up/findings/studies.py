@@ -234,7 +234,8 @@ def of_studies(tables):
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
         with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours at every
-        size. For other monomers also ``TYPE SIZE nm`` for the filling factor, a quarter, and ``law k`` of a quarter,
+        size. For other monomers also ``TYPE flatter``, by how much the power of size of a quarter is greater than ours
+        between the least and the greatest size, and ``TYPE SIZE nm`` for the filling factor, a quarter, and ``law k``,
         with ``equal.sizes`` and ``equal.sizes chi2 k``, the number of these ratios and how far off they are.
     """
     ensemble = tables[ENSEMBLE]
@@ -293,9 +294,14 @@ def _other(name, table, ensemble):
     for kind, part in _parts(table):
         for slot, column in columns.items():
             values[f"{name}.{kind} {slot}"] = cell_ratio(part, ensemble, column)
-        for size, own in part.groupby(np.round(part["a_eff"] / NM)):
+        sizes = dict(list(part.groupby(np.round(part["a_eff"] / NM))))
+        for size, own in sizes.items():
             for column in ("filling_factor", "omega_mass_75"):
                 values[f"{name}.{kind} {size:.0f} nm {column}"] = cell_ratio(own, ensemble, column)
+        values[f"{name}.{kind} flatter"] = _flatter(
+            *(cell_ratio(sizes[size], ensemble, "omega_mass_75") for size in (min(sizes), max(sizes))),
+            max(sizes) / min(sizes),
+        )
     for mark in MARKS:
         for k in POWERS:
             for kind in TYPES:
@@ -309,6 +315,12 @@ def _other(name, table, ensemble):
                     found = carried_over(part, beside, mark, k, alpha)
                     values[f"{name}.{kind} {size:.0f} nm {mark} law {k}"] = found
     return values
+
+
+def _flatter(below, above, span):
+    """By how much a power of size is greater, from two ratios at sizes that are `span` times apart."""
+    error = np.hypot(below.error / below.value, above.error / above.value)
+    return Measured(float(np.log(above.value / below.value) / np.log(span)), float(error / np.log(span)))
 
 
 def _equal(tables, values):
