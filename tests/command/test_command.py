@@ -321,8 +321,11 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         (("spin-up", "{bare}", *FAST, "--unit", "m"), "those in nm would: give that as the unit"),
         (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not a material; allowed: a-C, q-S"),
         (("show", "{chain}", "--material", "ice", "--materials-file", "none.yaml"), "none.yaml: cannot be read"),
-        (("spin-up", "{micron}", *FAST), "micron.txt: read in nm: radius has the median 1e-10"),
-        (("spin-up", "{micron}", *FAST), "those in um would: give that as the unit"),
+        (
+            ("spin-up", "{micron}", *FAST),
+            "micron.txt: states no unit, and read in nm the radii have the median 1e-10 m",
+        ),
+        (("spin-up", "{micron}", *FAST), "give the unit, which is um in all likelihood"),
         (("spin-up", "{apart}", *FAST), "apart.txt: The aggregate is in 2 pieces"),
         (("spin-up", "{chain}", *FAST, "--unit", "um"), "states that its lengths are in nm, and was to be read in um"),
         (("spin-up", "{chain}", *FAST, "--out", ""), "is a folder; allowed: a stem in it"),

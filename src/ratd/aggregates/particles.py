@@ -23,6 +23,8 @@ __all__ = ["Particles", "read_particles", "write_particles"]
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
 """Units of length in files, in m."""
+_USUAL, _DOUBTFUL = "nm", 1e-9
+"""The unit of a file that states none, and the median radius [m] below which another one is likely."""
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
 _STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
 """Unit of length -> style of units in LAMMPS, which its dumps may name."""
@@ -117,9 +119,8 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         stated = None
     if None not in (unit, stated) and unit != stated:
         raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
-    unit = unit or stated or "nm"
-    factor = _factor(unit)
-    _check_unit(path, unit, values[:, 3])
+    _check_unit(path, unit or stated, values[:, 3])
+    factor = _factor(unit or stated or _USUAL)
     values = values * factor
     return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
 
@@ -142,12 +143,21 @@ def _path(path):
 
 
 def _check_unit(path, unit, radius):
-    """Raise an error for radii that no dust has in a unit, with the one in which they would most likely be."""
-    if is_dust(radius * UNITS[unit]):
+    """Raise an error for radii that no dust has in a unit, with the one in which they would most likely be.
+
+    In that which is taken where none is stated, radii below `_DOUBTFUL` are an error too.
+    """
+    metres = radius * UNITS[unit or _USUAL]
+    if is_dust(metres) and (unit is not None or np.median(metres) >= _DOUBTFUL):
         return
     likely = likely_unit(radius, UNITS)
+    if is_dust(metres):
+        raise InputError(
+            f"{path}: states no unit, and read in {_USUAL} the radii have the median {np.median(metres):g} m: give the "
+            f"unit, which is {likely} in all likelihood."
+        )
     hint = "" if likely is None else f"; those in {likely} would: give that as the unit"
-    raise InputError(f"{path}: read in {unit}: {not_dust(radius * UNITS[unit])}{hint}.")
+    raise InputError(f"{path}: read in {unit or _USUAL}: {not_dust(metres)}{hint}.")
 
 
 def _factor(unit):

@@ -18,8 +18,8 @@ __all__ = [
     "number_array",
 ]
 
-SMALLEST_RADIUS, LARGEST_RADIUS = 1e-9, 1e-3
-"""Radii of monomers [m], from a large molecule to a grain of sand: what lies outside was given in another unit."""
+SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
+"""Radii of monomers [m], from an atom to a grain of sand: what lies outside was given in another unit."""
 _USUAL_RADIUS = 1e-7
 """About the radius of monomers [m], to guess the unit by."""
 FAR = 1e4

@@ -42,6 +42,11 @@ def _cache_root():
 numba.config.CACHE_DIR = str(_cache_root() / f"numba-{_source_digest()}")
 
 
+def cache_file(name):
+    """A path in the folder of the compiled code of this version."""
+    return Path(numba.config.CACHE_DIR) / name
+
+
 def jit(function=None, **options):
     """`numba.njit` with the flags of the package (`ratd.base.parts.FLAGS`) and a cache on disk; a decorator."""
     if function is None:

@@ -11,13 +11,13 @@ from contextlib import suppress
 from pathlib import Path
 
 import click
-import numba
 import numpy as np
 
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.particles import UNITS, read_particles
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
+from ratd.base.jit import cache_file
 from ratd.base.materials import MATERIALS, Material
 from ratd.base.units import NM
 from ratd.base.words import plural
@@ -230,7 +230,7 @@ def several(target, kind, material, provenance, starts, make):
             f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
             "finish them with their own command, remove the folder, or give another --out."
         )
-    ran = Path(numba.config.CACHE_DIR) / f"{kind}.ran"
+    ran = cache_file(f"{kind}.ran")
     if not ran.exists():
         click.echo("The first call of a new version compiles, which takes a minute or two.")
     with locked(block.folder / "lock", click.echo):
