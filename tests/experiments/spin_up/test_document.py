@@ -106,8 +106,9 @@ def test_grains_above_their_firm_bound_are_counted():
     assert values["bound.load"] == pytest.approx(0.5 * ((1e9 / 5e8) ** 2 + (1e9 / 2e9) ** 2))
     assert values["bound.over firm"] == 0
     # the printed 1e9 is above the bound of the large ones; with all held four times as long as it, above none
-    beyond = table.assign(omega_first_loss=4.0 * firm["firm_bound"], firm_bound=firm["firm_bound"])
-    assert what_contacts_hold(beyond, firm, table)["bound.above farthest"] == 0
+    assert values["bound.above farthest"] == 18
+    beyond = table.assign(omega_first_loss=4.0 * firm["firm_bound"])
+    assert what_contacts_hold(table, firm, beyond)["bound.above farthest"] == 0
     assert values["bound.BA large omega_mass_75"].value == pytest.approx(0.2)
 
 
