@@ -185,7 +185,8 @@ def _contacts(position, radius, material):
 
 def _widest(radius, material):
     """Equilibrium compression of two of the largest monomers [m]."""
-    return _compression(*np.full(2, np.max(radius)), material)
+    largest = float(np.max(radius))
+    return _compression(largest, largest, material)
 
 
 def _compression(a, b, material):

@@ -105,7 +105,7 @@ def test_grains_above_their_firm_bound_are_counted():
     assert values["bound.largest below"] == 100.0
     assert values["bound.load"] == pytest.approx(0.5 * ((1e9 / 5e8) ** 2 + (1e9 / 2e9) ** 2))
     assert values["bound.over firm"] == 0
-    # the printed 1e9 is above the bound of the large ones; with all held four times as long as it, above none
+    # what holds longest is at a fifth of its bound, and the printed 1e9 above that of all; at four times, above none
     assert values["bound.above farthest"] == 18
     beyond = table.assign(omega_first_loss=4.0 * firm["firm_bound"])
     assert what_contacts_hold(table, firm, beyond)["bound.above farthest"] == 0

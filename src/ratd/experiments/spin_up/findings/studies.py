@@ -317,10 +317,15 @@ def _other(name, table, ensemble):
     return values
 
 
+def _power(ratio, span):
+    """The power of a quantity of which a ratio is known, between two that are `span` times apart."""
+    return Measured(float(np.log(ratio.value) / np.log(span)), float(ratio.error / ratio.value / np.log(span)))
+
+
 def _flatter(below, above, span):
     """By how much a power of size is greater, from two ratios at sizes that are `span` times apart."""
-    error = np.hypot(below.error / below.value, above.error / above.value)
-    return Measured(float(np.log(above.value / below.value) / np.log(span)), float(error / np.log(span)))
+    ratio = above.value / below.value
+    return _power(Measured(ratio, ratio * np.hypot(below.error / below.value, above.error / above.value)), span)
 
 
 def _equal(tables, values):
@@ -331,11 +336,9 @@ def _equal(tables, values):
     found = {"equal.holds compact": all_of(is_below(ratio, 1.0) for ratio in compact)}
     small, large = (tables[name] for name in EQUAL)
     for kind, part in _parts(large):
-        span = np.log(cell_ratio(part, small, "radius_1").value)
+        span = cell_ratio(part, small, "radius_1").value
         for mark in MARKS:
-            ratio = cell_ratio(part, small, mark)
-            exponent = Measured(np.log(ratio.value) / span, ratio.error / ratio.value / span)
-            found[f"equal.{kind} {mark} exponent"] = exponent
+            found[f"equal.{kind} {mark} exponent"] = _power(cell_ratio(part, small, mark), span)
     for mark in MARKS:
         off = {}
         for k in POWERS:
