@@ -5,7 +5,16 @@ import pytest
 from scipy.stats import kstest
 
 from ratd.aggregates import mrn as module
-from ratd.aggregates.mrn import LARGEST, SMALLEST, moment_of_length, mrn, mrn_length, part_above, sample_length
+from ratd.aggregates.mrn import (
+    LARGEST,
+    SMALLEST,
+    moment_of_length,
+    mrn,
+    mrn_length,
+    part_above,
+    sample_length,
+    sample_moment,
+)
 from ratd.base.errors import InputError
 
 
@@ -60,3 +69,11 @@ def test_bad_input_is_refused_in_one_sentence(arguments, words, monkeypatch):
     with pytest.raises(InputError, match=words) as caught:
         mrn(**{"n": 100, "seed": 1} | arguments)
     assert "\n" not in str(caught.value)
+
+
+def test_the_moment_of_a_sample_is_the_inverse_of_its_lengths():
+    """q of a length of its own is the q that it was made with; a length that none has gives NaN."""
+    radii = mrn(5000, 1)
+    for q in (0.7, 3.0, 4.6, 12.5):
+        assert sample_moment(sample_length(radii, q), radii) == pytest.approx(q, rel=1e-3)
+    assert np.isnan(sample_moment(2.0 * radii.max(), radii))

@@ -15,6 +15,7 @@ __all__ = [
     "mrn_length",
     "part_above",
     "sample_length",
+    "sample_moment",
 ]
 
 SMALLEST, LARGEST = 50e-9, 2.5e-6
@@ -98,6 +99,13 @@ def sample_length(radii, q):
     radii = np.asarray(radii, dtype=float)
     scale = radii.max()
     return float(scale * np.mean((radii / scale) ** q) ** (1.0 / q))
+
+
+def sample_moment(length, radii):
+    """q whose L_q of some radii [m] is a length [m], the inverse of `sample_length`; NaN outside L_0.5 to L_40."""
+    q = np.linspace(0.5, 40.0, 801)
+    lengths = np.array([sample_length(radii, value) for value in q])
+    return float(np.interp(length, lengths, q, left=np.nan, right=np.nan))
 
 
 def free_samples(n, number=400):

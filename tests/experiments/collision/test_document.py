@@ -21,8 +21,9 @@ from ratd.experiments.collision.document import (
     _exponents,
     _same_collisions,
     values,
-    with_error,
 )
+from ratd.experiments.collision.document_samples import by_sample, largest, with_and_without
+from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -184,3 +185,43 @@ def test_a_velocity_at_the_ceiling_says_nothing_of_the_radius():
     found = _below_ceiling(table)
     assert found["ceiling velocity 30"] == "100 %" and found["ceiling velocity 15"] == "46 %"
     assert found["radius below velocity N_s"].startswith("300 ")
+
+
+def test_samples_are_compared_one_by_one():
+    """Both samples gain 0.2 by their small spheres, however much they differ; a rotation without a twin is left out."""
+    rows = [
+        dict(
+            law="velocity", cluster=cluster, velocity=20.0, impact_parameter=0.0, sample=sample, seed=seed, X=X,
+            largest_share=0.1 * sample, mass=(3.0 + sample) * 1e-13,
+        )
+        for sample, level in ((1, 0.1), (2, 0.6))
+        for seed, cluster, X in (
+            (0, "mrn", level + 0.3), (0, "mrn100", level + 0.1), (1, "mrn", level + 0.25), (1, "mrn100", level + 0.05),
+            (2, "mrn", 0.99),
+        )
+    ]  # fmt: skip
+    found = with_and_without(pd.DataFrame(rows), ("X",))
+    assert found["both velocity 20"] == "4" and found["both X velocity mrn 20"] == "0.62 ± 0.25"
+    assert float(found["gain X velocity 20"].split(" ± ")[0]) == pytest.approx(0.2)
+    ends = largest(pd.DataFrame(rows))
+    assert ends["shares velocity mrn"] == "0.10 to 0.20" and ends["ceilings velocity mrn"] == "0.80 to 0.90"
+    assert ends["mass velocity mrn"] == "4.00 to 5.00" and ends["samples velocity mrn"] == "2"
+
+
+def test_a_sample_is_told_with_its_own_moments(tables):
+    """Its radii are those that its collisions were made with, as the share of its largest sphere says."""
+    found = by_sample(tables.table, "velocity", "mrn")
+    for sample, part in tables.table[tables.table["cluster"] == "mrn"].groupby("sample"):
+        assert found[f"sample {sample} share"] == f"{part['largest_share'].iloc[0]:.2f}"
+    assert float(found["sample 1 L_4.6"]) < float(found["sample 1 L_5"])
+    # of two radii the greater has the higher moment
+    assert float(found["sample 2 radius N_s"]) < float(found["sample 2 radius X"])
+    assert float(found["sample 2 q N_s"]) < float(found["sample 2 q X"])
+
+
+def test_shares_of_pieces(tables):
+    """What is in large pieces and in single spheres is a part of the mass; a piece of less is in neither."""
+    both = tables.table["large_share"] + tables.table["single_share"]
+    assert both.between(0.0, 1.0 + 1e-9).all() and (tables.table["large_share"] > 0.0).any()
+    stuck = tables.table[(tables.table["X"] > 0.99)]
+    assert len(stuck) and (stuck["large_share"] > 0.98).all()

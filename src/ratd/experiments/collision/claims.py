@@ -120,7 +120,8 @@ def _which_radius(of):
         "energy left of MRN lies below the equal spheres in slow impacts and not in fast ones": of.mean(
             "energy_half", "velocity", "mrn", 15
         )
-        < of.mean("energy_half", "velocity", "220nm", 15)
+        < of.mean("energy_half", "velocity", "260nm", 15)
+        and of.apart("energy_half", "mrn", "260nm", 15) > 2.0
         and of.mean("energy_half", "velocity", "mrn", 40) > of.mean("energy_half", "velocity", "260nm", 40),
         "and cannot choose a radius in fast ones": mean_and_error(of.cell("velocity", "mrn", 40), "energy_half")[1]
         > of.mean("energy_half", "velocity", "353nm", 40) - of.mean("energy_half", "velocity", "220nm", 40),
@@ -136,9 +137,20 @@ def _which_radius(of):
             of.mean("N_s", "velocity", "353nm", speed) > of.mean("N_s", "velocity", "mrn100", speed) + 0.1
             for speed in (15, 30)
         ),
-        "without giants the recipe of 283 nm is nearly right": all(
-            abs(of.alike("velocity", quantity, "mrn100_to_800") - 283e-9) < 25e-9 for quantity in ("X", "N_s")
+        "without giants the recipe's 283 nm is the best radius within 20 nm": all(
+            abs(of.alike("velocity", quantity, "mrn100_to_800") - 283e-9) < 20e-9 for quantity in ("X", "N_s")
         ),
+        "and holds far better than that at 15 m/s": of.mean("X", "velocity", "mrn100_to_800", 15)
+        > of.mean("X", "velocity", "260nm", 15)
+        > of.mean("X", "velocity", "298nm", 15) + 0.05,
+        "nearly all mass of MRN stays in large pieces": of.mean("large_share", "velocity", "mrn", 30)
+        > 0.9
+        > of.mean("large_share", "velocity", "mrn100", 30)
+        > of.mean("large_share", "velocity", "260nm", 30)
+        > of.mean("large_share", "velocity", "314nm", 30)
+        > of.mean("large_share", "velocity", "353nm", 30),
+        "the recipe's radius breaks into many times as many pieces": of.mean("n_pieces", "velocity", "353nm", 20)
+        > 10.0 * of.mean("n_pieces", "velocity", "mrn", 20),
         "the fragmentation velocities of the samples of MRN and of 0.353 um do not overlap": bool(
             of.by_sample("velocity", "mrn").min() > of.by_sample("velocity", "353nm").max()
         ),
@@ -224,6 +236,10 @@ def _equal_spheres(of):
         "of equal spheres damping and sliding take alike": 0.6
         < of.mean("by_sliding", "velocity", "570nm", 30) / of.mean("by_damping", "velocity", "570nm", 30)
         < 1.1,
+        "twice the surface energy gives the printed v_frag of 0.57 um within its error": abs(
+            of.frag("velocity_50mJ", "570nm") - printed["570nm"]
+        )
+        < of.threshold("velocity_50mJ", "570nm")["error"],
         "springs lower the fragmentation velocity": of.frag("spring", "570nm") < 0.8 * base,
         "with twice the surface energy v_frag doubles, with half it halves": 1.6 * base
         < of.frag("velocity_50mJ", "570nm")

@@ -1,13 +1,21 @@
 """docs/collision.md: the values of its slots, from docs/collision/data; `.claims` has what its sentences say."""
 
 import numpy as np
-import pandas as pd
 
-from ratd.aggregates.mrn import SMALLEST, free_samples, moment_of_length, sample_length
+from ratd.aggregates.mrn import SMALLEST, moment_of_length
 from ratd.base.materials import MATERIALS
 from ratd.base.measured import quotient
 from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
+from ratd.experiments.collision.document_plan import figure_settings
+from ratd.experiments.collision.document_samples import (
+    by_sample,
+    largest,
+    of_same_samples,
+    samples_of_the_law,
+    with_and_without,
+)
+from ratd.experiments.collision.document_texts import moment_text, radius_text, with_error
 from ratd.experiments.collision.fragmentation import (
     STICKING,
     crossings,
@@ -27,7 +35,8 @@ __all__ = ["document", "values"]
 
 COLUMNS = (
     "X", "N_s", "X_rest", "N_s_rest", "X_early", "N_s_early", "energy_half", "energy_end", "by_damping", "by_sliding",
-    "by_rolling", "by_twisting", "single_share", "largest_share", "joined", "potential_share",
+    "by_rolling", "by_twisting", "single_share", "large_share", "largest_share", "joined", "potential_share",
+    "n_pieces",
 )  # fmt: skip
 
 
@@ -35,21 +44,8 @@ NEAR_CEILING = 0.85
 """Part of what N_s cannot exceed from which on it says more of the largest sphere than of fragmentation."""
 SMALLEST_OF = {"mrn": SMALLEST, "mrn100": 100 * NM}
 """Least radius [m] of clusters of the MRN law, up to 2.5 um all."""
-LENGTHS = ("radius", "radius_low", "radius_high")
-"""Columns of the radius that a cluster is like, and of its range."""
 SAME = ("longer", "half_step")
 """Laws under which some of the collisions of the law "velocity" were done once more."""
-
-
-def with_error(mean, error, digits=None):
-    """Such as "0.16 ± 0.03", as many decimals as make two digits of the error; the value alone without an error."""
-    if not np.isfinite(mean):
-        return "–"
-    if not (np.isfinite(error) and error > 0.0):
-        return f"{mean:.2f}" if digits is None else f"{mean:.{digits}f}"
-    if digits is None:
-        digits = min(3 if error >= 0.0005 else 4, max(0, 1 - int(np.floor(np.log10(error)))))
-    return f"{mean:.{digits}f} ± {error:.{digits}f}"
 
 
 def values(table, thresholds, likeness):
@@ -64,19 +60,18 @@ def values(table, thresholds, likeness):
     -------
     dict of str to str
         ``X velocity mrn100 30``: mean and error of a column at a velocity; ``n ...``: how many collisions;
-        ``v_frag velocity 570nm``: the fragmentation velocity, with ``... b0.3`` for an impact parameter;
+        ``v_frag velocity 570nm``: the fragmentation velocity; both with ``... b0.3`` for an impact parameter;
         ``v_stick``, ``ratio`` (of the two), ``energy`` (E_0/(N E_break)) likewise; ``radius velocity mrn100 X`` and
         ``q ...``: the equal spheres that a cluster is like; and some totals.
     """
     found = {}
-    for (law, cluster, velocity), part in table[table["impact_parameter"] == 0].groupby(["law", "cluster", "velocity"]):
-        key = f"{law} {cluster} {velocity:g}"
+    for (law, cluster, velocity, impact), part in table.groupby(["law", "cluster", "velocity", "impact_parameter"]):
+        key = f"{law} {cluster} {velocity:g}" + _off_centre(impact)
         found[f"n {key}"] = str(len(part))
         for column in COLUMNS:
             found[f"{column} {key}"] = with_error(*mean_and_error(part, column))
     for _, row in thresholds.iterrows():
-        impact = row["impact_parameter"]
-        key = f"{row['law']} {row['cluster']}" + (f" b{impact:g}" if impact else "")
+        key = f"{row['law']} {row['cluster']}" + _off_centre(row["impact_parameter"])
         found[f"v_frag {key}"] = _threshold(row)
         found[f"collisions {key}"] = f"{row['collisions']:.0f}"
         found[f"v_stick {key}"] = with_error(row["sticking_velocity"], np.nan)
@@ -86,23 +81,29 @@ def values(table, thresholds, likeness):
         found[f"energy {key}"] = f"{row['energy_per_contact']:.2g} ± {relative:.0%}" if is_close(row) else "–"
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
-        found[f"radius {key}"] = _radius(row)
+        found[f"radius {key}"] = radius_text(row)
         if row["cluster"] in SMALLEST_OF:
-            found[f"q {key}"] = _moment(row, SMALLEST_OF[row["cluster"]])
+            found[f"q {key}"] = moment_text(row, SMALLEST_OF[row["cluster"]])
         found[f"misfit {key}"] = with_error(row["misfit"], np.nan)
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
-    found |= _by_sample(table, "velocity", "mrn") | _shorter(table, "velocity", "mrn")
-    found |= _calibrated(thresholds)
-    found |= _one_pair(table) | _with_and_without(table) | _largest(table) | _late(table) | _exponents(thresholds)
-    found |= _free() | _constants() | _of_same_samples(table) | _recipe(thresholds) | _by_v_frag(table, thresholds)
-    found |= _below_ceiling(table) | _same_collisions(table) | _first_fall(table, thresholds)
+    found |= by_sample(table, "velocity", "mrn") | with_and_without(table, COLUMNS) | largest(table)
+    found |= samples_of_the_law() | of_same_samples(table) | _one_pair(table) | _same_collisions(table)
+    found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants()
+    found |= _recipe(thresholds) | _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
+    found |= _late(table) | _shorter(table, "velocity", "mrn")
     found |= {
-        "collisions": str(len(table)),
+        "collisions": str((~table["law"].isin(SAME)).sum()),
+        "collisions again": str(table["law"].isin(SAME).sum()),
         "worst balance velocity": f"{100 * table.loc[table['friction'] != 'spring', 'balance'].max():.1f} %",
         "worst balance spring": f"{100 * table.loc[table['friction'] == 'spring', 'balance'].max():.1f} %",
     }
     found |= {f"q of {radius * 1e6:g}": f"{moment_of_length(radius):.2f}" for radius in RADII}
     return found
+
+
+def _off_centre(impact):
+    """What stands behind a slot of collisions off centre."""
+    return f" b{impact:g}" if impact else ""
 
 
 def _calibrated(thresholds):
@@ -142,48 +143,13 @@ def _calibrated(thresholds):
 
 
 def _one_pair(table):
-    """Values of the first rotation of the first sample alone: ``first X velocity mrn 30``."""
-    first = table[(table["impact_parameter"] == 0) & (table["seed"] == 0) & (table["sample"] == 1)]
+    """Values of single rotations of the first sample: ``first X velocity mrn 30``, ``shown ...`` for that of Fig. 4."""
+    central = table[(table["impact_parameter"] == 0) & (table["sample"] == 1)]
     found = {}
-    for row in first.to_dict("records"):
-        for column in COLUMNS:
-            key = f"first {column} {row['law']} {row['cluster']} {row['velocity']:g}"
-            found[key] = with_error(row[column], np.nan)
-    return found
-
-
-def _with_and_without(table):
-    """Values of collisions of the same radii and rotations, with all spheres of MRN and without those below 100 nm.
-
-    ``both X velocity mrn 30`` and ``both X velocity mrn100 30``; ``both velocity 30``: how many.
-    """
-    alike = ["law", "velocity", "sample", "seed"]
-    table = table[table["impact_parameter"] == 0]
-    parts = {cluster: table[table["cluster"] == cluster] for cluster in ("mrn", "mrn100")}
-    pairs = parts["mrn"][alike].merge(parts["mrn100"][alike])
-    found = {}
-    for cluster, part in parts.items():
-        for (law, velocity), own in part.merge(pairs).groupby(["law", "velocity"]):
-            found[f"both {law} {velocity:g}"] = str(len(own))
-            for column in COLUMNS:
-                found[f"both {column} {law} {cluster} {velocity:g}"] = with_error(*mean_and_error(own, column))
-    return found
-
-
-def _of_same_samples(table):
-    """Values of MRN above 0.1 um with rate friction, of the samples that another cluster or law has.
-
-    ``beside X velocity mrn100_tree 15`` and ``beside X spring mrn100 15``.
-    """
-    table = table[table["impact_parameter"] == 0]
-    base = table[(table["law"] == "velocity") & (table["cluster"] == "mrn100")]
-    found = {}
-    for law, cluster in (("velocity", "mrn100_tree"), ("spring", "mrn100")):
-        other = table[(table["law"] == law) & (table["cluster"] == cluster)]
-        for velocity, part in base[base["sample"].isin(other["sample"].unique())].groupby("velocity"):
-            for column in ("X", "N_s"):
-                key = f"beside {column} {law} {cluster} {velocity:g}"
-                found[key] = with_error(*mean_and_error(part, column))
+    for name, seed in {"first": 0, "shown": figure_settings("figure4")["rotation"]}.items():
+        for row in central[central["seed"] == seed].to_dict("records"):
+            key = f"{row['law']} {row['cluster']} {row['velocity']:g}"
+            found |= {f"{name} {column} {key}": with_error(row[column], np.nan) for column in COLUMNS}
     return found
 
 
@@ -252,7 +218,22 @@ def _below_ceiling(table):
         below = [velocity for velocity, share in part.items() if share < NEAR_CEILING]
         rows = likeness_table(own[((own["cluster"] == "mrn") | is_equal(own)) & own["velocity"].isin(below)])
         for _, row in rows[(rows["cluster"] == "mrn") & (rows["quantity"] == "N_s")].iterrows():
-            found[f"radius below {law} N_s"] = _radius(row)
+            found[f"radius below {law} N_s"] = radius_text(row)
+    return found
+
+
+def _at_each_velocity(table):
+    """``radius at velocity CLUSTER X 15``: radius [nm] of the equal spheres that a cluster is like at one velocity."""
+    own = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
+    one = own["cluster"] == "mrn100_to_800"
+    found = {}
+    for velocity in own.loc[one, "velocity"].unique():
+        # the least bootstrap: its errors are not told
+        rows = likeness_table(own[(one | is_equal(own)) & (own["velocity"] == velocity)], samples=2)
+        for _, row in rows[rows["cluster"] == "mrn100_to_800"].iterrows():
+            end = " (end of the range)" if row["at_end"] else ""
+            key = f"radius at velocity {row['cluster']} {row['quantity']} {velocity:g}"
+            found[key] = f"{row['radius'] / NM:.0f}{end}"
     return found
 
 
@@ -291,37 +272,6 @@ def _first_fall(table, thresholds):
             found[f"first v_frag {law} {cluster}"] = f"{velocity[0]:.1f}"
     known = _calibrated(first).get("A velocity")
     return found | ({} if known is None else {"A first velocity": known.split(" ")[0]})
-
-
-def _largest(table):
-    """``shares LAW CLUSTER``: parts of the mass in the largest sphere of each sample; ``ceilings``: one less that."""
-    found = {}
-    for (law, cluster), part in table.groupby(["law", "cluster"]):
-        found[f"samples {law} {cluster}"] = str(part["sample"].nunique())
-        shares = np.sort(part.groupby("sample")["largest_share"].first().to_numpy())
-        for velocity, own in part[part["impact_parameter"] == 0].groupby("velocity"):
-            by_sample = np.sort(own.groupby("sample")["X"].mean().to_numpy())
-            found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in by_sample)
-        for name, parts in (("shares", shares), ("ceilings", np.sort(1.0 - shares))):
-            ends = f"{parts[0]:.2f}" if len(parts) == 1 else f"{parts[0]:.2f} to {parts[-1]:.2f}"
-            found[f"{name} {law} {cluster}"] = ends
-    return found
-
-
-def _by_sample(table, law, cluster):
-    """``radius by sample LAW CLUSTER N_s`` and so on: radii [nm] of the equal spheres that each sample is like."""
-    own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
-    one = own["cluster"] == cluster
-    # the least bootstrap: its errors are not told
-    rows = pd.concat(
-        likeness_table(own[~one | (own["sample"] == sample)], samples=2)
-        for sample in sorted(own.loc[one, "sample"].unique())
-    )
-    rows = rows[rows["cluster"] == cluster]
-    return {
-        f"radius by sample {law} {cluster} {quantity}": ", ".join(f"{radius / NM:.0f}" for radius in part["radius"])
-        for quantity, part in rows.groupby("quantity")
-    }
 
 
 def _late(table):
@@ -373,15 +323,6 @@ def _exponents(thresholds):
     return found
 
 
-def _free():
-    """What free samples of the MRN law scatter by, as texts: share of the largest sphere, L_4.6 [um], 16 to 84 %."""
-    samples = free_samples(5000)
-    shares = [radii[0] ** 3 / np.sum(radii**3) for radii in samples]
-    lengths = [sample_length(radii, 4.6) * 1e6 for radii in samples]
-    low, high = np.quantile([shares, lengths], [0.16, 0.84], axis=1)
-    return {name: f"{low[k]:.2f} to {high[k]:.2f}" for k, name in enumerate(("free share", "free length"))}
-
-
 def _constants():
     """``constant NAME``: what silica and its contacts are in these collisions."""
     silica = MATERIALS["silica"]
@@ -404,24 +345,6 @@ def _threshold(row):
             return f"between {row['below']:g} and {row['above']:g}"
         return with_error(row["velocity"], row["error"], 1)
     return f"not between {row['slowest']:g} and {row['fastest']:g}"
-
-
-def _radius(row):
-    """Text of the radius [nm] that a cluster is like, and from 16 to 84 %."""
-    return _alike([row[name] / NM for name in LENGTHS], row["at_end"], 0)
-
-
-def _moment(row, smallest):
-    """Text of the moment q of the law from `smallest` [m] on that has this radius."""
-    return _alike([moment_of_length(row[name], smallest) for name in LENGTHS], row["at_end"], 1)
-
-
-def _alike(numbers, at_end, digits):
-    """Text of the best number and of its ends, 16 and 84 %."""
-    if not np.isfinite(numbers[0]):
-        return "–"
-    best, low, high = (f"{number:.{digits}f}" for number in numbers)
-    return f"{best} ({low}–{high})" + (" (end of the range)" if at_end else "")
 
 
 def tables_of(files):

@@ -25,7 +25,7 @@ FIGURES = {
     "figure1": ("figure1", "built", {}),
     "figure2": ("figure2", "built", {}),
     "figure3": ("snapshots", "picture", {"rotation": 1, "spacing": 1.0e-7}),
-    "figure4": ("snapshots", "picture", {"rotation": 1, "spacing": 1.5e-7}),
+    "figure4": ("snapshots", "picture", {"rotation": 2, "spacing": 1.5e-7}),
     "figure5": ("figure5", "table", _SHOWN),
     "figure6": ("figure6", "table", _SHOWN),
     "figure7": ("figure7", "runs", _SHOWN),

@@ -14,6 +14,7 @@ from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 __all__ = [
     "EARLY",
     "HALF",
+    "LARGE",
     "LATE",
     "analyse",
     "cluster_table",
@@ -33,6 +34,8 @@ EARLY = 0.6e-6
 GRID = 0.2
 """What a fragmentation velocity is uncertain by, over the distance of the two velocities that it lies between: X is no
 straight line there."""
+LARGE = 0.01
+"""Mass of a large piece over that of both clusters."""
 LATE = 2.0e-6
 """Time [s] at which X is looked at once more: what comes after it says whether pieces still part."""
 REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
@@ -53,6 +56,7 @@ COLUMNS = {
     "mean_sphere_radius": ("m", "mean radius of the spheres"),
     "largest_radius": ("m", "radius of the largest sphere"),
     "largest_share": ("1", "its part of the mass of its cluster"),
+    "mass": ("kg", "mass of both clusters"),
     "timestep": ("s", "time step"),
     "duration": ("s", "duration"),
     "X": ("1", "X at the end"),
@@ -65,6 +69,7 @@ COLUMNS = {
     "n_pieces": ("1", "number of pieces, single spheres included"),
     "n_single": ("1", "number of single spheres"),
     "single_share": ("1", "their part of the mass"),
+    "large_share": ("1", "part of the mass in pieces of at least a hundredth of it"),
     "joined": ("1", "1 where the largest spheres of both clusters are in one piece"),
     "energy_half": ("1", "kinetic energy left at 0.5 us, over E_0"),
     "energy_end": ("1", "kinetic energy left at the end, over E_0"),
@@ -139,10 +144,12 @@ def collision_table(collisions):
         energy = row["impact_energy"].item()
         time, moving = row["time"].values, row["kinetic_translation"].values + row["kinetic_spin"].values
         early = time <= HALF
+        pieces = row["piece_mass"].values / row["mass"].item()
         values = {name: row[name].item() for name in COLUMNS if name in row.variables}
         values |= {
             "surface_energy": material.surface_energy,
             "single_share": row["single_mass"].item() / row["mass"].item(),
+            "large_share": pieces[pieces >= LARGE].sum(),
             "energy_half": np.interp(HALF, time, moving) / energy if time[-1] >= HALF else np.nan,
             "energy_end": moving[-1] / energy,
             **{name: np.interp(then, time, part) if time[-1] >= then else np.nan for name, then, part in _then(row)},

@@ -1,0 +1,123 @@
+"""Slots of docs/collision.md that set samples or single collisions beside each other, and what samples are."""
+
+import numpy as np
+import pandas as pd
+
+from ratd.aggregates.mrn import free_samples, mrn, sample_length, sample_moment
+from ratd.base.units import NM
+from ratd.experiments.collision.document_texts import with_error
+from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.likeness import is_equal, likeness_table
+
+__all__ = ["by_sample", "largest", "of_same_samples", "samples_of_the_law", "with_and_without"]
+
+SPHERES = 5000
+"""Of a sample of the MRN law (Sect. 2.3)."""
+MASS_UNIT = 1e-13
+"""[kg]"""
+
+
+def with_and_without(table, columns):
+    """Values of collisions of the same radii and rotations, with all spheres of MRN and without those below 100 nm.
+
+    ``both X velocity mrn 30`` and ``both X velocity mrn100 30``; ``both velocity 30``: how many; ``gain X velocity
+    30``: by how much the mean of a sample is greater with them, mean over the samples.
+    """
+    alike = ["law", "velocity", "sample", "seed"]
+    table = table[table["impact_parameter"] == 0]
+    parts = {cluster: table[table["cluster"] == cluster] for cluster in ("mrn", "mrn100")}
+    pairs = parts["mrn"][alike].merge(parts["mrn100"][alike])
+    found = {}
+    for cluster, part in parts.items():
+        for (law, velocity), own in part.merge(pairs).groupby(["law", "velocity"]):
+            found[f"both {law} {velocity:g}"] = str(len(own))
+            for column in columns:
+                found[f"both {column} {law} {cluster} {velocity:g}"] = with_error(*mean_and_error(own, column))
+    with_all, without = (part.merge(pairs).groupby(alike[:3])[list(columns)].mean() for part in parts.values())
+    for (law, velocity), own in (with_all - without).groupby(alike[:2]):
+        for column in columns:
+            gain = own[column]
+            found[f"gain {column} {law} {velocity:g}"] = with_error(gain.mean(), gain.std(ddof=1) / np.sqrt(len(gain)))
+    return found
+
+
+def of_same_samples(table):
+    """Values of MRN above 0.1 um with rate friction, of the samples that another cluster or law has.
+
+    ``beside X velocity mrn100_tree 15`` and ``beside X spring mrn100 15``.
+    """
+    table = table[table["impact_parameter"] == 0]
+    base = table[(table["law"] == "velocity") & (table["cluster"] == "mrn100")]
+    found = {}
+    for law, cluster in (("velocity", "mrn100_tree"), ("spring", "mrn100")):
+        other = table[(table["law"] == law) & (table["cluster"] == cluster)]
+        for velocity, part in base[base["sample"].isin(other["sample"].unique())].groupby("velocity"):
+            for column in ("X", "N_s"):
+                key = f"beside {column} {law} {cluster} {velocity:g}"
+                found[key] = with_error(*mean_and_error(part, column))
+    return found
+
+
+def largest(table):
+    """``shares LAW CLUSTER``: parts of the mass in the largest sphere of each sample; ``ceilings``: one less that.
+
+    ``mass LAW CLUSTER``: mass of both clusters [`MASS_UNIT`]; ``samples ...``: how many; ``by sample X ...``: means.
+    """
+    found = {}
+    for (law, cluster), part in table.groupby(["law", "cluster"]):
+        found[f"samples {law} {cluster}"] = str(part["sample"].nunique())
+        for velocity, own in part[part["impact_parameter"] == 0].groupby("velocity"):
+            means = np.sort(own.groupby("sample")["X"].mean().to_numpy())
+            found[f"by sample X {law} {cluster} {velocity:g}"] = ", ".join(f"{mean:.2f}" for mean in means)
+        each = part.groupby("sample")[["largest_share", "mass"]].first()
+        numbers = {"shares": each["largest_share"], "ceilings": 1.0 - each["largest_share"]}
+        for name, values in (numbers | {"mass": each["mass"] / MASS_UNIT}).items():
+            ends = dict.fromkeys(f"{end:.2f}" for end in (values.min(), values.max()))
+            found[f"{name} {law} {cluster}"] = " to ".join(ends)
+    return found
+
+
+def by_sample(table, law, cluster):
+    """``radius by sample LAW CLUSTER N_s`` and so on: radii [nm] of the equal spheres that each sample is like.
+
+    ``sample 1 share``, ``sample 1 L_5`` [nm] and so on: what a sample is; ``sample 1 radius X`` [nm] and ``sample 1 q
+    X``: the radius that it is like, and the moment of its own radii that has this length.
+    """
+    own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
+    one = own["cluster"] == cluster
+    found, rows = {}, []
+    for sample in sorted(own.loc[one, "sample"].unique()):
+        # the least bootstrap: its errors are not told
+        alike = likeness_table(own[~one | (own["sample"] == sample)], samples=2)
+        rows.append(alike[alike["cluster"] == cluster])
+        radii = mrn(SPHERES, int(sample))
+        found[f"sample {sample} share"] = f"{_largest_share(radii):.2f}"
+        found |= {f"sample {sample} L_{q:g}": f"{sample_length(radii, q) / NM:.0f}" for q in (4.6, 5.0)}
+        for quantity, radius in zip(rows[-1]["quantity"], rows[-1]["radius"], strict=True):
+            found[f"sample {sample} radius {quantity}"] = f"{radius / NM:.0f}"
+            found[f"sample {sample} q {quantity}"] = f"{sample_moment(radius, radii):.1f}"
+    return found | {
+        f"radius by sample {law} {cluster} {quantity}": ", ".join(f"{radius / NM:.0f}" for radius in part["radius"])
+        for quantity, part in pd.concat(rows).groupby("quantity")
+    }
+
+
+def samples_of_the_law():
+    """What samples of the MRN law scatter by, as texts: share of the largest sphere, L_4.6 [um], 16 to 84 %.
+
+    ``free share`` and ``free length`` of whatever comes, ``ruled share`` of those that the rule of drawing takes.
+    """
+    free = free_samples(SPHERES)
+    ruled = [mrn(SPHERES, seed) for seed in range(200)]
+    parts = {
+        "free share": [_largest_share(radii) for radii in free],
+        "free length": [sample_length(radii, 4.6) * 1e6 for radii in free],
+        "ruled share": [_largest_share(radii) for radii in ruled],
+    }
+    ends = {name: np.quantile(values, [0.16, 0.84]) for name, values in parts.items()}
+    return {name: f"{low:.2f} to {high:.2f}" for name, (low, high) in ends.items()}
+
+
+def _largest_share(radii):
+    """Part of the mass in the largest of some spheres."""
+    return (radii.max() ** 3 / np.sum(radii**3)).item()
