@@ -368,7 +368,6 @@ def of_theory(table):
     }
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
-        values[f"theory.{kind} strength"] = median(part["omega_mass_75"] / part["midplane"])
     trees = table["type"] == "BA"
     values["theory.trees"] = int(trees.sum())
     values["theory.trees on it"] = int((np.abs(over[trees] - 1.0) < SHIFTED).sum())

@@ -5,7 +5,6 @@ is spun up has others. So the firm bound is taken as grown, and again in the las
 which no spin-up may exceed.
 """
 
-import math
 from types import SimpleNamespace
 
 from ratd.aggregates.growth import grow
@@ -18,7 +17,6 @@ from ratd.experiments.spin_up.firm_bound import firm_bound
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR, how_to_turn
 from ratd.experiments.spin_up.marks import ROUNDING, disruption
 from ratd.experiments.spin_up.run import Run
-from ratd.experiments.spin_up.tensile import midplane_bound
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75")
@@ -29,10 +27,9 @@ COLUMNS = {
     "cut_bound": ("rad s-1", "bound on omega of the grain as it stands"),
     "firm_bound": ("rad s-1", "bound on omega of the grain as it stands whose contacts hold sideways and push as well"),
     "firm_bound_at_loss": ("rad s-1", "the same of the grain in the last record before its first loss of mass"),
-    "midplane": ("rad s-1", "omega at which the mean tension at the mid-plane is the strength of Tatsuuma 2019"),
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
 }
-KIND = table_kind("theory", "Disruption against bound and tensile strength", COLUMNS)
+KIND = table_kind("theory", "Disruption against its bounds", COLUMNS)
 
 
 def followed(grain):
@@ -87,7 +84,6 @@ def compute(settings, progress=None):
         grain = grow(settings["type"], settings["a_eff"], settings["material"], seed)
         run, at_loss = followed(grain)
         marks = disruption(run)
-        solid = not math.isfinite(grain.shape.porosity) or grain.shape.porosity <= 0.0
         rows.append(
             dict(
                 **grain_values(grain),
@@ -96,7 +92,6 @@ def compute(settings, progress=None):
                 cut_bound=cut_bound(grain),
                 firm_bound=firm_bound(grain),
                 firm_bound_at_loss=at_loss,
-                midplane=math.nan if solid else midplane_bound(grain),
                 **{name: float(marks[name]) for name in MARKS},
             )
         )

@@ -139,7 +139,7 @@ def test_pulls_of_other_sorts_are_told_apart():
     entries = [pulls([10.0, 20.0]), pulls([20.0, 60.0], phi=0.2), pulls([1.0, 3.0], n_axes=3)]
     entries += [pulls([11.0, 22.0], rate=1e-6), pulls([30.0, 30.0], n=4096), pulls([9.0, 18.0], unloaded=1)]
     found = of_tension(xr.concat(entries, "entry"))
-    unit = 0.951 * 0.1 / 1e-7 * 0.1**1.8
+    unit = 0.6 * 0.1 / 1e-7 * 0.1**1.8
     assert found["tension_x.rate"] == 3e-6 and found["tension_x.N"] == 1024
     assert found["tension_x.0.1"].value == pytest.approx(15.0 / unit)
     assert found["tension_xyz.0.1"].value == pytest.approx(2.0 / unit)
@@ -155,12 +155,26 @@ def test_pulls_of_other_sorts_are_told_apart():
     assert not any(name.endswith("over_0.2") for name in found)
 
 
+def test_the_formula_of_the_tensile_strength_holds_or_fails():
+    """It is asked of pulls along one axis from 0.05 on; looser clusters, and three axes, may be far from it."""
+    units = {phi: 0.6 * 0.1 / 1e-7 * phi**1.8 for phi in (0.02, 0.1, 0.2)}
+    near = [pulls([0.9 * units[0.1], 1.0 * units[0.1]]), pulls([1.1 * units[0.2], 1.1 * units[0.2]], phi=0.2)]
+    apart = [pulls([9.0 * units[0.02]] * 2, phi=0.02), pulls([0.1 * units[0.1]] * 2, n_axes=3)]
+    found = of_tension(xr.concat(near + apart, "entry"))
+    assert found["tension_formula"] == "holds"
+    assert found["tension_x.kPa_0.1"].value == pytest.approx(0.95e-3 * units[0.1])
+    found = of_tension(xr.concat([*near, pulls([1.2 * units[0.1]] * 2, phi=0.1)], "entry"))
+    assert found["tension_formula"] == "holds"
+    found = of_tension(xr.concat([*near, pulls([0.6e6 * 0.4**1.8 * 1.2] * 2, phi=0.4)], "entry"))
+    assert found["tension_formula"] == "fails"
+
+
 def test_pulls_without_tension_count_in_means_alone():
     entries = [pulls([0.0, 20.0]), pulls([20.0, 40.0], phi=0.2), pulls([0.0, 0.0], phi=0.4)]
     table = xr.concat(entries, "entry")
     table["phi_strength"] = table["phi_strength"].where(table["strength"] > 0.0)
     found = of_tension(table)
-    assert found["tension_x.0.1"].value == pytest.approx(10.0 / (0.951 * 0.1 / 1e-7 * 0.1**1.8))
+    assert found["tension_x.0.1"].value == pytest.approx(10.0 / (0.6 * 0.1 / 1e-7 * 0.1**1.8))
     assert [found[f"tension_x.held_{phi}"] for phi in (0.1, 0.2, 0.4)] == [1, 2, 0]
     assert found["tension_x.peak_0.1"].value == 0.5
     assert np.isnan(found["tension_x.peak_0.4"].value) and np.isnan(found["tension_x.residual_0.4"].value)

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import cell_statistics
@@ -42,7 +43,7 @@ from ratd.experiments.spin_up.figures.style import (
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.pairs import force_controlled_omega
 from ratd.experiments.spin_up.printed import TABLE_3
-from ratd.experiments.spin_up.tensile import predictions, tensile_strength_tatsuuma2019
+from ratd.experiments.spin_up.tensile import predictions
 from ratd.pictures.snapshots import drive_text
 from ratd.pictures.style import (
     ONE_COLUMN,

@@ -3,16 +3,15 @@
 import numpy as np
 import pytest
 
+from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import cell_statistics
 from ratd.experiments.spin_up.tensile import (
     SCALINGS,
     eq27,
     fractal_exponent,
-    midplane_tension,
     predictions,
     tensile_strength_greenberg1995,
-    tensile_strength_tatsuuma2019,
 )
 from synthetic_runs import make_table
 

@@ -13,7 +13,7 @@ from ratd.aggregates.strength import (
     sound_speed_kataoka2013,
 )
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured, median, quotient
+from ratd.base.measured import Measured, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
@@ -46,7 +46,7 @@ from ratd.experiments.compression.strength import (
     slope_of_structure,
 )
 from ratd.experiments.compression.tables import nearest_phi
-from ratd.experiments.compression.tension_findings import of_tension
+from ratd.experiments.compression.tension_findings import of_spun, of_tension
 
 __all__ = ["findings"]
 
@@ -390,7 +390,5 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
     if dense is not None:
         values |= of_dense(dense)
     if spun is not None:
-        over = spun["strength"] / (0.951 * spun["phi"] ** 1.8)
-        for kind in np.unique(spun["type"]):
-            values[f"spun.{kind}"] = median(over[spun["type"] == kind])
+        values |= of_spun(spun)
     return values | verdicts(values, sets)

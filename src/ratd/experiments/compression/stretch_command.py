@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from ratd.aggregates.strength import tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import TENSILE_FACTOR, tensile_strength_tatsuuma2019
 from ratd.base.words import plural
 from ratd.experiments.command import (
     OF_STARTS,
@@ -98,8 +98,8 @@ def show(path, out):
     lines = [
         f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, compressed to phi = "
         f"{first['phi_start']:.3g} and pulled along {ways}, mean ± standard deviation:",
-        f"{answer('tensile strength', strength, 'Pa')}: {np.mean(strength / expected):.3g} of 0.951 gamma/r_0 phi^1.8 "
-        "(Tatsuuma et al. 2019)",
+        f"{answer('tensile strength', strength, 'Pa')}: {np.mean(strength / expected):.3g} of "
+        f"{TENSILE_FACTOR:g} gamma/r_0 phi^1.8 (Tatsuuma et al. 2019)",
         answer("phi at the greatest tension", phi, "").rstrip(),
         answer("pressure at rest before the pull", pressed, "Pa"),
     ]
@@ -134,7 +134,7 @@ def _figure(found, expected, ways):
             length = length**3
         axes.plot(length, run["tension"], color=HIGHLIGHT, lw=0.7, label=None if k else "starts")
     axes.axhline(0.0, color="black", lw=0.5)
-    axes.axhline(expected, color=GREY, ls=":", label=r"$0.951\,\gamma/r_0\,\phi^{1.8}$")
+    axes.axhline(expected, color=GREY, ls=":", label=rf"${TENSILE_FACTOR:g}\,\gamma/r_0\,\phi^{{1.8}}$")
     axes.set_xlabel(f"length along {ways}, over that at the start")
     axes.set_ylabel("tension [Pa]")
     axes.legend()

@@ -4,11 +4,11 @@ import numpy as np
 
 from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured, quotient
+from ratd.base.measured import Measured, median, quotient
 from ratd.base.statistics import jackknife_error, mean_of
 from ratd.experiments.compression.strength import measured, of_means
 
-__all__ = ["in_units", "main_pulls", "nominal_phi", "of_tension", "spun_up"]
+__all__ = ["in_units", "main_pulls", "nominal_phi", "of_spun", "of_tension", "spun_up"]
 
 TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
@@ -48,7 +48,8 @@ def of_tension(entries):
         Slots ``tension_WAY.WHAT_PHI``, PHI being the filling factor of the compression. WAY is ``x`` or ``xyz`` for
         what most pulls along one axis were made with (`main_pulls`); ``unloaded`` where the box let go of the cluster
         first; ``rate_RATE`` and ``N_NUMBER`` where the pull had another rate or number of monomers. WHAT is ``over``
-        for these last three, the strength over that of the main pulls along one axis.
+        for these last three, the strength over that of the main pulls along one axis. ``tension_formula``: whether the
+        formula holds for the main pulls; ``tension_x.kPa_0.1``: their strength [kPa] from 0.1.
     """
     strength, formula = in_units(entries)
     rate, n = main_pulls(entries)
@@ -84,10 +85,28 @@ def of_tension(entries):
     ratios = [own.value for name, own in found.items() if ".over_" in name and "tension_N" not in name]
     if ratios:
         found["tension_ways"] = "by less than a tenth" if np.abs(np.array(ratios) - 1.0).max() < 0.1 else "by more"
+    held = [own.value for name, own in found.items() if _of_main(name)]
+    if held:
+        found["tension_formula"] = "holds" if np.abs(np.array(held) - 1.0).max() < 0.15 else "fails"
+    tenth = main & (phi == 0.1)
+    if tenth.any():
+        found["tension_x.kPa_0.1"] = Measured(*mean_of(1e-3 * entries["strength"].values[tenth]))
     fitted = main & (phi >= TENSION_FROM) & (strength > 0.0)
     if len(np.unique(phi[fitted])) > 1:
         found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])
     return found
+
+
+def _of_main(name):
+    """Whether a slot is the strength over the formula of the main pulls from `TENSION_FROM` on."""
+    own = name.removeprefix("tension_x.")
+    return own != name and own[:1].isdigit() and float(own) >= TENSION_FROM
+
+
+def of_spun(spun):
+    """Strength that spin implies (of `spun_up`) over the formula of Tatsuuma et al., medians: ``spun.TYPE``."""
+    over = spun["strength"] / tensile_strength_tatsuuma2019(1.0, 1.0, spun["phi"])
+    return {f"spun.{kind}": median(over[spun["type"] == kind]) for kind in np.unique(spun["type"])}
 
 
 def _over(values, seed, own, other, same):

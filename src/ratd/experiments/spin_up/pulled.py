@@ -3,7 +3,7 @@
 `ratd.validation.pulling` pulls the grains and writes the files whose kind stands here. Each is pulled in two ways. In
 the *box* its own copies squeeze it until it fills a periodic box as densely as itself, which changes it, and the box
 grows along one axis. By its *ends* it is pulled as it stands. A strength S is told as S <a>/(gamma phi^1.8), <a> being
-the mean radius of the monomers and phi the filling factor of what is pulled: 0.951 by Tatsuuma et al. (2019).
+the mean radius of the monomers and phi the filling factor of what is pulled: 0.6 by Tatsuuma et al. (2019).
 """
 
 from pathlib import Path
@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import TENSILE_FACTOR, midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.errors import InputError
 from ratd.experiments.spin_up.cells import size_key, sort_cells
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["AXES", "FACTOR", "KIND", "VARIANTS", "WAYS", "beside_spin", "outer_radius", "read_pulled", "usual"]
+__all__ = ["AXES", "KIND", "VARIANTS", "WAYS", "beside_spin", "outer_radius", "read_pulled", "usual"]
 
 WAYS = ("box", "ends")
 """How a grain is pulled; the flag in a file is the place in this list."""
@@ -26,8 +26,6 @@ AXES = ("shortest", "middle", "longest")
 """Principal axes of a grain; the flag in a file is the place in this list."""
 VARIANTS = ("usual", "slow", "less", "more")
 """The pull that counts, and with one thing changed: the rates, or the column ``part`` of the table."""
-FACTOR = float(tensile_strength_tatsuuma2019(1.0, 1.0, 1.0))
-"""S <a>/(gamma phi^1.8) by Tatsuuma et al. (2019)."""
 MARKS = {"": "omega_mass_75", " first": "omega_first_loss"}
 """Marks whose tension stands beside the strength, by what is put to the name of a slot."""
 
@@ -128,7 +126,7 @@ def read_pulled(folder):
 def _ratio(strength, grains, phi):
     """S <a>/(gamma phi^1.8) of strengths S [Pa]."""
     formula = tensile_strength_tatsuuma2019(grains["surface_energy"], grains["mean_monomer_radius"], phi)
-    return FACTOR * strength / formula
+    return TENSILE_FACTOR * strength / formula
 
 
 def usual(table):

@@ -4,19 +4,16 @@ The strengths of Greenberg et al. and Seizinger et al. hold constants that the p
 is how they depend on the grain. That of Tatsuuma et al. has an absolute value.
 """
 
-import math
-
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import size_key
 
 __all__ = [
     "SCALINGS",
     "eq27",
     "fractal_exponent",
-    "midplane_bound",
     "predictions",
     "tensile_strength_greenberg1995",
 ]
@@ -47,7 +44,7 @@ def eq27(a_eff, tensile_strength, density):
     References
     ----------
     Reissl et al. (2024), A&A 692, A60, Eq. 27; Hoang (2020), Galaxies 8, 52. It takes the solid sphere of the same mass
-    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (`midplane_bound`).
+    for the porous grain; with its real extent a_eff phi^(-1/3) omega is phi^(-1/6) of this (`midplane_tension`).
     """
     return 2.0 / np.asarray(a_eff) * np.sqrt(np.asarray(tensile_strength) / density)
 
@@ -175,24 +172,3 @@ def _at_rest(cells, grown):
     found = groups[list(_DEPENDS_ON)].mean().reindex(wanted)
     found["fractal_dimension"] = groups["fractal_dimension"].median()
     return {name: found[name].to_numpy(float) for name in _DEPENDS_ON}
-
-
-def midplane_bound(grain):
-    """Angular velocity at which the mean tension at the mid-plane equals Tatsuuma's tensile strength [rad s-1].
-
-    The grain counts as a sphere of its own mass and filling factor, so that a_out = a_eff phi^(-1/3); the monomer
-    radius is the mean radius. An estimate.
-
-    Parameters
-    ----------
-    grain : Grain
-
-    Returns
-    -------
-    float
-        omega [rad s-1].
-    """
-    phi = grain.shape.filling_factor
-    strength = tensile_strength_tatsuuma2019(grain.material.surface_energy, float(np.mean(grain.radius)), phi)
-    outer_radius = grain.effective_radius * phi ** (-1.0 / 3.0)
-    return math.sqrt(strength / midplane_tension(1.0, grain.material.density, phi, outer_radius))

@@ -11,7 +11,7 @@ from ratd.experiments.compression.figures.common import COLOURS, read_sets, seed
 from ratd.experiments.compression.strength import mean_pressure
 from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, new_figure, styled
 
-READ_OFF = {"this paper": 0.24, "Seizinger et al. 2012": 0.21, "Güttler et al. 2009": 0.17}
+READ_OFF = {"Kataoka et al. 2013": 0.24, "Seizinger et al. 2012": 0.21, "Güttler et al. 2009": 0.17}
 """Filling factors at 300 Pa that Kataoka et al. (2013) name in Sect. 3.7."""
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ratd.base.statistics import mean_of
-from ratd.aggregates.strength import tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import TENSILE_FACTOR, tensile_strength_tatsuuma2019
 from ratd.experiments.compression.figures.common import COLOURS
 from ratd.experiments.compression.tension_findings import in_units, main_pulls, nominal_phi
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
@@ -26,7 +26,7 @@ def tension(entries, spun=None):
     spun : dict, optional
         Grains that were spun up: ``phi``, ``strength``, S a/gamma, and ``type``, (k,) each.
     """
-    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, "tensile strength")
+    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, f"tensile strength, {main_pulls(entries)[1]} monomers")
     axes = figure.subplots()
     if spun is not None:
         for kind, marker, grey in zip(np.unique(spun["type"]), ".x+", ("#444444", "#777777", "#A0A0A0"), strict=False):
@@ -50,9 +50,8 @@ def tension(entries, spun=None):
             at = [phi[group].mean() for group in groups]
             axes.errorbar(at, mean, error, marker=marker, color=colour, ls="none", capsize=2, label=label)
     x = np.geomspace(0.01, 0.6, 20)
-    axes.plot(
-        x, tensile_strength_tatsuuma2019(1.0, 1.0, x), color="black", lw=0.8, label=r"$0.951\,\phi^{1.8}$ (recalled)"
-    )
+    label = rf"${TENSILE_FACTOR:g}\,\phi^{{1.8}}$ (Tatsuuma et al. 2019)"
+    axes.plot(x, tensile_strength_tatsuuma2019(1.0, 1.0, x), color="black", lw=0.8, label=label)
     axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$ at the start", ylabel=r"$S\,r_0/\gamma$")
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from ratd.aggregates.strength import tensile_strength_tatsuuma2019
+from ratd.aggregates.strength import TENSILE_FACTOR, tensile_strength_tatsuuma2019
 from ratd.experiments.spin_up.cells import TYPES, size_key
-from ratd.experiments.spin_up.pulled import FACTOR, MARKS, beside_spin, usual
+from ratd.experiments.spin_up.pulled import MARKS, beside_spin, usual
 from ratd.experiments.spin_up.figures.style import type_style
 from ratd.pictures.style import GREY, TWO_COLUMNS, bar_lengths, empty, logarithmic, new_figure, styled
 
 PANELS = {"box": "squeezed, pulled in the box", "ends": "as grown, pulled by the ends", "spin": "as grown, turned"}
 """Panel -> its title."""
-_STATED = r"$0.951\,\phi^{1.8}$"
+_STATED = rf"${TENSILE_FACTOR:g}\,\phi^{{1.8}}$"
 _SUMMARY = {"marker": "o", "ms": 5, "mfc": "white", "mew": 1.2, "capsize": 2.5, "elinewidth": 1.2, "ls": "none"}
 
 
@@ -70,7 +70,7 @@ def _points(own, name):
         part = own[own["way"] == name]
         phi, ratio = part["phi"], part["ratio"]
     there = np.isfinite(ratio.to_numpy())
-    strength = (ratio * tensile_strength_tatsuuma2019(1.0, 1.0, phi) / FACTOR).to_numpy()
+    strength = (ratio * tensile_strength_tatsuuma2019(1.0, 1.0, phi) / TENSILE_FACTOR).to_numpy()
     return phi.to_numpy()[there], strength[there], part["type"].to_numpy()[there]
 
 

@@ -166,7 +166,7 @@ def table_3_by_mark(table):
 def strength_omega(table):
     """omega [rad/s] at which the mean tension in the mid-plane of each grain is the tensile strength of its material.
 
-    The grain counts as a sphere of its own mass and filling factor phi, its strength is 0.951 gamma/a phi^1.8 with the
+    The grain counts as a sphere of its own mass and filling factor phi, its strength is 0.6 gamma/a phi^1.8 with the
     mean radius a of its monomers (Tatsuuma et al. 2019).
     """
     found = np.empty(len(table))

@@ -1,9 +1,10 @@
 """What the document tells of the grains that were pulled apart, see `ratd.experiments.spin_up.pulled`."""
 
+from ratd.aggregates.strength import TENSILE_FACTOR
 from ratd.base.measured import Measured, geometric_mean
 from ratd.base.statistics import mean_of
 from ratd.experiments.spin_up.cells import TYPES, cell_of
-from ratd.experiments.spin_up.pulled import AXES, FACTOR, MARKS, VARIANTS, WAYS, beside_spin, usual
+from ratd.experiments.spin_up.pulled import AXES, MARKS, VARIANTS, WAYS, beside_spin, usual
 
 __all__ = ["of_pulled"]
 
@@ -55,8 +56,8 @@ def _of_type(own):
     """Slots of the usual pulls of a type, beside the spin-up."""
     box, ends = (own[own["way"] == way] for way in WAYS)
     values = {"box": _geometric(box, box["ratio"]), "ends": _geometric(ends, ends["ratio"])}
-    values["box over formula"] = _geometric(box, box["ratio"] / FACTOR)
-    values["ends over formula"] = _geometric(ends, ends["ratio"] / FACTOR)
+    values["box over formula"] = _geometric(box, box["ratio"] / TENSILE_FACTOR)
+    values["ends over formula"] = _geometric(ends, ends["ratio"] / TENSILE_FACTOR)
     for word, mark in MARKS.items():
         values[f"spin{word}"] = _geometric(box, box[f"spin_{mark}"])
         values[f"over spin{word}"] = _geometric(box, box["ratio"] / box[f"spin_{mark}"])
