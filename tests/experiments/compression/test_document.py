@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -107,6 +108,24 @@ def test_clusters_that_are_made_later_are_added_to_their_set(tmp_path):
     assert twice["seed"].values.tolist() == list(range(10))
     factor = (twice["pressure"] / found["pressure"]).mean("phi_bin").values
     assert factor == pytest.approx([1, 2, 1, 2, 1, 2, 1, 1, 1, 1])
+
+
+def test_pulls_that_are_made_later_are_added(tmp_path):
+    whole = io.read(document.DATA / "tension.nc", "tension_set")
+    for name, chosen in (("first", slice(None, None, 2)), ("later", slice(1, None, 2))):
+        io.write(tmp_path / name / "tension/x/phi_0.1_seed_0.nc", whole.isel(entry=chosen), "tension_set")
+        document.collect(tmp_path / name, tmp_path / "data")
+    found = io.read(tmp_path / "data/tension.nc", "tension_set")
+    pair = [table.to_dataframe().sort_values(list(table.variables), ignore_index=True) for table in (whole, found)]
+    pd.testing.assert_frame_equal(pair[0], pair[1][pair[0].columns])
+    # those that are there already are replaced
+    again = whole.isel(entry=[3, 4])
+    again["strength"] = 2.0 * again["strength"]
+    io.write(tmp_path / "again/tension/x/phi_0.1_seed_0.nc", again, "tension_set")
+    document.collect(tmp_path / "again", tmp_path / "data")
+    twice = io.read(tmp_path / "data/tension.nc", "tension_set")
+    more = twice["strength"].values.sum() - whole["strength"].values.sum()
+    assert twice.sizes == whole.sizes and more == pytest.approx(whole["strength"].values[[3, 4]].sum())
 
 
 def test_clusters_made_in_another_way_do_not_take_the_place_of_some(tmp_path):

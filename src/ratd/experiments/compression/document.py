@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from ratd.base.errors import FileError, InputError
 from ratd.base.words import plural
@@ -41,13 +42,15 @@ SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
 PEER = Path("docs/validation/data")
 """Folder of what LAMMPS found, taken there by ``python -m ratd.validation.document collect``."""
+_ONE_PULL = ("n_monomers", "seed", "phi_compressed", "strain_rate", "n_axes", "unloaded")
+"""What tells a pull from others; the rate is rounded to 1e-9."""
 
 
 def collect(results, data=DATA):
     """Take the tables of a folder of results beside the document, those that are finished.
 
-    A set that is made in pieces grows: the clusters of a new table are added to those that are there, or take the place
-    of those with the same seeds.
+    What is made in pieces grows: the clusters of a new table are added to those that are there, or take the place of
+    those with the same seeds; so do pulls.
 
     Parameters
     ----------
@@ -65,7 +68,8 @@ def collect(results, data=DATA):
     """
     results, data = Path(results), Path(data)
     names = [path.name for path in sorted((results / "compression").glob("*.nc")) if path.is_file()]
-    if not names:
+    pulls = sorted(path for path in (results / "tension").rglob("phi_*.nc") if path.is_file())
+    if not names and not pulls:
         raise FileError(f"{results}: holds no tables of the compression; run the target compression_tables first")
     for name in names:
         kind = "compression_snapshots" if name == "snapshots.nc" else "compression_set"
@@ -86,9 +90,20 @@ def collect(results, data=DATA):
                 continue
         with atomic(target) as temporary:
             temporary.write_bytes((results / "compression" / name).read_bytes())
-    pulls = sorted(path for path in (results / "tension").rglob("phi_*.nc") if path.is_file())
     if pulls:
-        io.write(data / "tension.nc", read_pulls(pulls), "tension_set")
+        target = data / "tension.nc"
+        entries = read_pulls(pulls)
+        if target.is_file():
+            entries = _added(io.read(target, "tension_set"), entries)
+        io.write(target, entries, "tension_set")
+
+
+def _added(there, new):
+    """Pulls that are there, but for those that are made anew, and new ones behind them."""
+    own, other = (
+        pd.MultiIndex.from_arrays([np.round(table[name].values, 9) for name in _ONE_PULL]) for table in (there, new)
+    )
+    return xr.concat([there.isel(entry=~own.isin(other)), new], "entry", combine_attrs="drop")
 
 
 def read_data(data=DATA, spun=SPUN, peer=PEER):
