@@ -4,7 +4,8 @@
     python -m ratd.validation.lammps_spin_up --minutes 30
     python -m ratd.validation.lammps_spin_up --list         # what there is and what is left
 
-Each grain becomes a row of a small table in docs/validation/data/lammps_spin_up, a file a material and type. Of the
+Each grain becomes a row of a small table in docs/validation/data/lammps_spin_up, a file a material and type. A grain of
+550 nm takes LAMMPS hours: what it had reached stands in the folder `UNFINISHED` there, and goes with the row. Of the
 grains of the check against LAMMPS (config/validation.yaml, `ratd.validation.lammps`) only the spin-up of production is
 made here: what LAMMPS found stands in docs/validation/data/lammps.nc. The others (`LARGE`) LAMMPS drives in its turning
 frame as there, with epsilon = ln(`STEP`)/(2 pi `ROTATIONS`), and ratd in the inertial frame in the same steps of omega.
@@ -50,6 +51,8 @@ __all__ = [
 
 CONFIG = ("config/validation.yaml",)
 DATA = "docs/validation/data/lammps_spin_up"
+UNFINISHED = "unfinished"
+"""Folder in it of the checkpoints."""
 EXTENT = "full"
 """Of the config: whose grains of the check against LAMMPS are taken."""
 STEP = 1.02
@@ -145,7 +148,7 @@ def tasks(plan, data):
                 timestep_factor,
                 grain in (*CONTROLS, *LARGE),
                 source,
-                Path(plan.results, "lammps_spin_up", "_".join(map(str, grain))),
+                Path(data, UNFINISHED, "_".join(map(str, grain))),
             ),
         )
         for grain in wanted
