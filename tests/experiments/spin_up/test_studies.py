@@ -156,7 +156,7 @@ def test_a_law_of_the_ensemble_holds_for_equal_monomers_with_the_right_mean_radi
                 right, wrong = (values[f"{name}.{kind} {mark} law {k}"] for k in (2, 1))
                 assert right.value == pytest.approx(1.0, abs=4 * right.error) and 0.0 < right.error < 0.06
                 assert wrong.value == pytest.approx(right.value * np.sqrt(35 / 30), rel=1e-3)
-        assert values[f"equal.{mark} mean"] == "<a²>^(1/2)"
+        assert values[f"equal.{mark} mean"] == "⟨a²⟩^(1/2)"
         assert values[f"equal.{mark} chi2 2"] < 20.0 < values[f"equal.{mark} chi2 1"]
     # and at each size by itself
     n = values["equal.sizes"]

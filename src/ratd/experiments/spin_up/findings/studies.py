@@ -28,7 +28,7 @@ ENSEMBLE, DMT, PRINTED = "spun_up", "dmt", "printed"
 EQUAL = ("equal_30nm", "equal_41nm")
 OTHER_MONOMERS = (*EQUAL, "second_reading")
 MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
-POWERS = {1: "<a>", 2: "<a²>^(1/2)", 3: "<a³>^(1/3)"}
+POWERS = {1: "⟨a⟩", 2: "⟨a²⟩^(1/2)", 3: "⟨a³⟩^(1/3)"}
 """Means of the radii of a grain's monomers that may stand for <a_mon> in Eq. 33."""
 
 
