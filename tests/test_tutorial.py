@@ -84,5 +84,10 @@ def test_the_site_is_built_without_a_warning(tmp_path):
         build, cwd=ROOT, env=os.environ | {"NO_MKDOCS_2_WARNING": "1"}, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    page = (tmp_path / "site" / "api" / "index.html").read_text()
-    assert "read_particles" in page
+    site = tmp_path / "site"
+    assert "read_particles" in (site / "api" / "index.html").read_text()
+    # formulae are there without a network
+    laws = (site / "model" / "laws" / "index.html").read_text()
+    assert laws.count("<math") > 100 and "<msqrt>" in laws and "arithmatex" not in laws
+    fetched = re.findall(r'<script[^>]+src="(https?:)?//', laws)
+    assert fetched == []
