@@ -22,7 +22,7 @@ from ratd.experiments.collision.document import (
     _same_collisions,
     values,
 )
-from ratd.experiments.collision.document_samples import by_sample, largest, with_and_without
+from ratd.experiments.collision.document_samples import by_sample, halved, largest, with_and_without
 from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
@@ -206,6 +206,21 @@ def test_samples_are_compared_one_by_one():
     ends = largest(pd.DataFrame(rows))
     assert ends["shares velocity mrn"] == "0.10 to 0.20" and ends["ceilings velocity mrn"] == "0.80 to 0.90"
     assert ends["mass velocity mrn"] == "4.00 to 5.00" and ends["samples velocity mrn"] == "2"
+
+
+def test_half_the_step_is_told_by_the_same_collisions():
+    """Each is 0.1 lower with half the step, whatever it is; what was not done again does not count."""
+    how = dict(cluster="mrn100", impact_parameter=0.0, N_s=0.5)
+    rows = [
+        dict(how, law=law, velocity=velocity, sample=sample, seed=seed, X=X - 0.1 * (law == "half_step"))
+        for sample in (1, 2)
+        for velocity, seed, X in ((15.0, 0, 0.9), (20.0, 1, 0.3 * sample), (30.0, 0, 0.4))
+        for law in ("velocity", "half_step")
+        if not (law == "half_step" and velocity == 30.0)
+    ]
+    found = halved(pd.DataFrame(rows))
+    assert found["halved n mrn100"] == "4" and float(found["halved X mrn100"].split(" ± ")[0]) == pytest.approx(-0.1)
+    assert float(found["halved N_s mrn100"].split(" ± ")[0]) == 0.0
 
 
 def test_a_sample_is_told_with_its_own_moments(tables):

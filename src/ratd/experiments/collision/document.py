@@ -10,6 +10,7 @@ from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.document_plan import figure_settings
 from ratd.experiments.collision.document_samples import (
     by_sample,
+    halved,
     largest,
     of_same_samples,
     samples_of_the_law,
@@ -90,7 +91,7 @@ def values(table, thresholds, likeness):
     found |= samples_of_the_law() | of_same_samples(table) | _one_pair(table) | _same_collisions(table)
     found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants()
     found |= _recipe(thresholds) | _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
-    found |= _late(table) | _shorter(table, "velocity", "mrn")
+    found |= halved(table) | _late(table) | _shorter(table, "velocity", "mrn")
     found |= {
         "collisions": str((~table["law"].isin(SAME)).sum()),
         "collisions again": str(table["law"].isin(SAME).sum()),

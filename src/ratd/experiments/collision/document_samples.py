@@ -9,7 +9,7 @@ from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 
-__all__ = ["by_sample", "largest", "of_same_samples", "samples_of_the_law", "with_and_without"]
+__all__ = ["by_sample", "halved", "largest", "of_same_samples", "samples_of_the_law", "with_and_without"]
 
 SPHERES = 5000
 """Of a sample of the MRN law (Sect. 2.3)."""
@@ -55,6 +55,23 @@ def of_same_samples(table):
             for column in ("X", "N_s"):
                 key = f"beside {column} {law} {cluster} {velocity:g}"
                 found[key] = with_error(*mean_and_error(part, column))
+    return found
+
+
+def halved(table):
+    """What half the step changes in the same collisions: mean, and its error over samples, else over pairs.
+
+    ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs.
+    """
+    table = table[table["impact_parameter"] == 0]
+    half, whole = (table[table["law"] == law] for law in ("half_step", "velocity"))
+    pairs = half.merge(whole, on=["cluster", "velocity", "sample", "seed"], suffixes=("", " whole"))
+    found = {}
+    for cluster, own in pairs.groupby("cluster"):
+        found[f"halved n {cluster}"] = str(len(own))
+        for column in ("X", "N_s"):
+            change = own.assign(change=own[column] - own[f"{column} whole"])
+            found[f"halved {column} {cluster}"] = with_error(*mean_and_error(change, "change"))
     return found
 
 
