@@ -8,6 +8,7 @@ import itertools
 import numpy as np
 
 from ratd.base.units import NM
+from ratd.experiments.collision.document_samples import change_by_half
 from ratd.experiments.collision.likeness import is_equal
 from ratd.experiments.collision.fragmentation import fragmentation_velocities, mean_and_error
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
@@ -61,6 +62,10 @@ class _Found:
         parts = (mean_and_error(self.cell(law, name, velocity), column) for name in (cluster, other))
         (one, error), (two, error_two) = parts
         return two > one - 2.0 * np.hypot(error, error_two)
+
+    def halved(self, column, cluster):
+        """By how much a column changes with half the step, mean and error, see `document_samples.change_by_half`."""
+        return mean_and_error(change_by_half(self.table, column, cluster), "change")
 
     def threshold(self, law, cluster, impact_parameter=0.0):
         """Row of a fragmentation velocity."""
@@ -180,6 +185,10 @@ def _what_decides(of):
         "the largest sphere holds 0.25 to 0.40 of the mass": 0.24
         < of.cell("velocity", "mrn", 30)["largest_share"].min()
         and of.cell("velocity", "mrn", 30)["largest_share"].max() < 0.41,
+        "with half the step MRN breaks more": of.halved("N_s", "mrn")[0] > 2.0 * of.halved("N_s", "mrn")[1]
+        and of.halved("X", "mrn")[0] < 0.0,
+        "and MRN above 0.1 um by a few hundredths at most": abs(of.halved("N_s", "mrn100")[0]) < 0.04
+        and abs(of.halved("X", "mrn100")[0]) < 0.04,
         "with half the step MRN above 0.1 um breaks alike": of.apart("N_s", "mrn100", "mrn100", 30, law="half_step")
         < 2.0,
         "at 30 m/s N_s of MRN is far below that of equal spheres": of.mean("N_s", "velocity", "mrn100", 30)

@@ -9,7 +9,15 @@ from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.fragmentation import mean_and_error
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 
-__all__ = ["by_sample", "halved", "largest", "of_same_samples", "samples_of_the_law", "with_and_without"]
+__all__ = [
+    "by_sample",
+    "change_by_half",
+    "halved",
+    "largest",
+    "of_same_samples",
+    "samples_of_the_law",
+    "with_and_without",
+]
 
 SPHERES = 5000
 """Of a sample of the MRN law (Sect. 2.3)."""
@@ -61,18 +69,25 @@ def of_same_samples(table):
 def halved(table):
     """What half the step changes in the same collisions: mean, and its error over samples, else over pairs.
 
-    ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs.
+    ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs; ``halved scatter CLUSTER``:
+    standard deviation of the change of N_s between them.
     """
-    table = table[table["impact_parameter"] == 0]
-    half, whole = (table[table["law"] == law] for law in ("half_step", "velocity"))
-    pairs = half.merge(whole, on=["cluster", "velocity", "sample", "seed"], suffixes=("", " whole"))
     found = {}
-    for cluster, own in pairs.groupby("cluster"):
-        found[f"halved n {cluster}"] = str(len(own))
+    for cluster in table.loc[table["law"] == "half_step", "cluster"].unique():
         for column in ("X", "N_s"):
-            change = own.assign(change=own[column] - own[f"{column} whole"])
-            found[f"halved {column} {cluster}"] = with_error(*mean_and_error(change, "change"))
+            pairs = change_by_half(table, column, cluster)
+            found[f"halved {column} {cluster}"] = with_error(*mean_and_error(pairs, "change"))
+        found[f"halved n {cluster}"] = str(len(pairs))
+        found[f"halved scatter {cluster}"] = f"{pairs['change'].std(ddof=1):.2f}"
     return found
+
+
+def change_by_half(table, column, cluster):
+    """Central collisions of a cluster that were done again with half the step, and the ``change`` of a column."""
+    own = table[(table["impact_parameter"] == 0) & (table["cluster"] == cluster)]
+    half, whole = (own[own["law"] == law] for law in ("half_step", "velocity"))
+    pairs = half.merge(whole, on=["velocity", "sample", "seed"], suffixes=("", " whole"))
+    return pairs.assign(change=pairs[column] - pairs[f"{column} whole"])
 
 
 def largest(table):
