@@ -1,9 +1,9 @@
 """Slots of docs/collision.md that set samples or single collisions beside each other, and what samples are."""
 
 import numpy as np
-import pandas as pd
 
 from ratd.aggregates.mrn import free_samples, mrn, sample_length, sample_moment
+from ratd.base.statistics import mean_of
 from ratd.base.units import NM
 from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.fragmentation import mean_and_error
@@ -44,8 +44,7 @@ def with_and_without(table, columns):
     with_all, without = (part.merge(pairs).groupby(alike[:3])[list(columns)].mean() for part in parts.values())
     for (law, velocity), own in (with_all - without).groupby(alike[:2]):
         for column in columns:
-            gain = own[column]
-            found[f"gain {column} {law} {velocity:g}"] = with_error(gain.mean(), gain.std(ddof=1) / np.sqrt(len(gain)))
+            found[f"gain {column} {law} {velocity:g}"] = with_error(*mean_of(own[column].to_numpy()))
     return found
 
 
@@ -110,28 +109,24 @@ def largest(table):
 
 
 def by_sample(table, law, cluster):
-    """``radius by sample LAW CLUSTER N_s`` and so on: radii [nm] of the equal spheres that each sample is like.
+    """``sample 1 share``, ``sample 1 L_5`` [nm] and so on: what a sample is, and the equal spheres that it is like.
 
-    ``sample 1 share``, ``sample 1 L_5`` [nm] and so on: what a sample is; ``sample 1 radius X`` [nm] and ``sample 1 q
-    X``: the radius that it is like, and the moment of its own radii that has this length.
+    ``sample 1 radius X`` [nm] and ``sample 1 q X``: their radius, and the moment of its own radii that has this length.
     """
     own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
     one = own["cluster"] == cluster
-    found, rows = {}, []
+    found = {}
     for sample in sorted(own.loc[one, "sample"].unique()):
         # the least bootstrap: its errors are not told
         alike = likeness_table(own[~one | (own["sample"] == sample)], samples=2)
-        rows.append(alike[alike["cluster"] == cluster])
+        alike = alike[alike["cluster"] == cluster]
         radii = mrn(SPHERES, int(sample))
         found[f"sample {sample} share"] = f"{_largest_share(radii):.2f}"
         found |= {f"sample {sample} L_{q:g}": f"{sample_length(radii, q) / NM:.0f}" for q in (4.6, 5.0)}
-        for quantity, radius in zip(rows[-1]["quantity"], rows[-1]["radius"], strict=True):
+        for quantity, radius in zip(alike["quantity"], alike["radius"], strict=True):
             found[f"sample {sample} radius {quantity}"] = f"{radius / NM:.0f}"
             found[f"sample {sample} q {quantity}"] = f"{sample_moment(radius, radii):.1f}"
-    return found | {
-        f"radius by sample {law} {cluster} {quantity}": ", ".join(f"{radius / NM:.0f}" for radius in part["radius"])
-        for quantity, part in pd.concat(rows).groupby("quantity")
-    }
+    return found
 
 
 def samples_of_the_law():

@@ -85,9 +85,9 @@ def of_tension(entries):
     ratios = [own.value for name, own in found.items() if ".over_" in name and "tension_N" not in name]
     if ratios:
         found["tension_ways"] = "by less than a tenth" if np.abs(np.array(ratios) - 1.0).max() < 0.1 else "by more"
-    held = [own.value for name, own in found.items() if _of_main(name)]
-    if held:
-        found["tension_formula"] = "holds" if np.abs(np.array(held) - 1.0).max() < 0.15 else "fails"
+    over_formula = [found[f"tension_x.{each:g}"].value for each in np.unique(phi[main]) if each >= TENSION_FROM]
+    if over_formula:
+        found["tension_formula"] = "holds" if np.abs(np.array(over_formula) - 1.0).max() < 0.15 else "fails"
     tenth = main & (phi == 0.1)
     if tenth.any():
         found["tension_x.kPa_0.1"] = Measured(*mean_of(1e-3 * entries["strength"].values[tenth]))
@@ -95,12 +95,6 @@ def of_tension(entries):
     if len(np.unique(phi[fitted])) > 1:
         found["tension_x.exponent"] = _slope(np.log(phi[fitted]), np.log(strength[fitted]), seed[fitted])
     return found
-
-
-def _of_main(name):
-    """Whether a slot is the strength over the formula of the main pulls from `TENSION_FROM` on."""
-    own = name.removeprefix("tension_x.")
-    return own != name and own[:1].isdigit() and float(own) >= TENSION_FROM
 
 
 def of_spun(spun):
