@@ -1,7 +1,7 @@
 """Every number that docs/validation.md tells, but for those of LAMMPS, from the tables of the checks.
 
 Each function gives the slots of one check, which begin with its name: numbers, numbers with their standard error, and
-a ``verdict``, met or open.
+a ``verdict``: met, missed, or open where the errors do not decide.
 """
 
 import numpy as np
@@ -52,6 +52,8 @@ APART = 1e-6
 """Distance of a monomer from itself in the other frame, over the mean radius."""
 REFERENCE = 2e-3
 """Distance from the spheres of the reference over their way; the same of energies."""
+FASTER, SPUN = 1e-2, 2e-2
+"""The same of velocities over that of the impact, of spins over the fastest."""
 KEPT = 1e-3
 """Error of the energy over the kinetic energy, at `TIMESTEP_FACTOR`."""
 CONTACTS = 0.02
@@ -60,11 +62,14 @@ PRESSED = 0.03
 """... and the mean pressure up to phi = 0.03, where no limit of LAMMPS follows the load yet."""
 ALIKE = 0.05
 """... and above, also in dense clusters without twisting, or with the limits of LAMMPS in ratd."""
-CLOSED = {"compression": 5e-3, "long steps": 5e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
+CLOSED = {"compression": 5e-3, "long steps": 2e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
 SHIFTED = 0.01
 """What nothing should change by more."""
 SIGMAS = 2.0
+"""Errors by which a criterion must be met or missed, else it is open."""
+LARGE_TREE = 20
+"""Monomers of a BA grain from which on it is told apart from small ones."""
 CHANCE = 0.01
 """Least probability of a Kolmogorov-Smirnov test."""
 SOLID = 0.10
@@ -76,23 +81,35 @@ def limits():
     found = {
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
-        "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE,
+        "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE, "large tree": LARGE_TREE,
+        "reference velocity": FASTER, "reference spin": SPUN,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
 
 def _verdict(holds):
-    return "met" if holds else "open"
+    return "met" if holds else "missed"
+
+
+def _decided(ratios, part):
+    """Verdict on ratios that should be 1 within a part: open where one is within `SIGMAS` errors of the edge."""
+    off = [abs(ratio.value - 1.0) for ratio in ratios]
+    errors = [SIGMAS * ratio.error for ratio in ratios]
+    if any(each - error > part for each, error in zip(off, errors, strict=True)):
+        return "missed"
+    return "met" if all(each + error < part for each, error in zip(off, errors, strict=True)) else "open"
 
 
 def of_reference(table):
     """Three spheres in this code and in the reference of tests/reference."""
     values = {f"reference.{name}": table[name].max() for name in ("position", "velocity", "spin")}
     energy = table[["box_work", "dissipated", "stored"]].max().max()
+    allowed = {"position": REFERENCE, "velocity": FASTER, "spin": SPUN}
+    near = energy < REFERENCE and all(values[f"reference.{name}"] < most for name, most in allowed.items())
     return values | {
         "reference.cases": len(table),
         "reference.energy": energy,
-        "reference.verdict": _verdict(values["reference.position"] < REFERENCE and energy < REFERENCE),
+        "reference.verdict": _verdict(near),
     }
 
 
@@ -216,6 +233,7 @@ def of_energy(table):
             f"energy.{name} worst": gap.max(),
             f"energy.{name} run median": part["worst"].median(),
             f"energy.{name} run worst": part["worst"].max(),
+            f"energy.{name} dissipated": part["dissipated"].median(),
             f"energy.{name} dissipated most": part["dissipated"].max(),
             f"energy.{name} verdict": _verdict(gap.max() < CLOSED[name]),
         }
@@ -225,13 +243,12 @@ def of_energy(table):
 def of_compression(table):
     """Compression beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_lammps`."""
     found = {name.replace("lammps.", "compression."): value for name, value in of_lammps(table).items()}
-    within = all(abs(found[f"compression.n_contacts_{low:g}"].value - 1.0) < CONTACTS for low in EDGES[:-1])
-    alike = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < PRESSED for low in EDGES[:2])
-    dense = all(abs(found[f"compression.pressure_{low:g}"].value - 1.0) < ALIKE for low in EDGES[2:-1])
+    contacts = [found[f"compression.n_contacts_{low:g}"] for low in EDGES[:-1]]
+    pressure = [found[f"compression.pressure_{low:g}"] for low in EDGES[:-1]]
     return found | {
-        "compression.verdict": _verdict(within),
-        "compression.pressure verdict": _verdict(alike),
-        "compression.dense verdict": _verdict(dense),
+        "compression.verdict": _decided(contacts, CONTACTS),
+        "compression.pressure verdict": _decided(pressure[:2], PRESSED),
+        "compression.dense verdict": _decided(pressure[2:], ALIKE),
     }
 
 
@@ -239,8 +256,7 @@ def of_dense(table):
     """Dense clusters beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_dense`."""
     found = dense_over(table)
     bins = ("untwisted_0.05", "untwisted_0.1", "limits_0.1")
-    within = all(abs(found[f"dense.pressure_{pair}"].value - 1.0) < ALIKE for pair in bins)
-    return found | {"dense.verdict": _verdict(within)}
+    return found | {"dense.verdict": _decided([found[f"dense.pressure_{pair}"] for pair in bins], ALIKE)}
 
 
 def of_box_at_rest(table):
@@ -369,8 +385,10 @@ def of_theory(table):
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
     trees = table["type"] == "BA"
-    values["theory.trees"] = int(trees.sum())
-    values["theory.trees on it"] = int((np.abs(over[trees] - 1.0) < SHIFTED).sum())
+    values["theory.trees least"] = over[trees].min()
+    for name, part in (("trees", trees), ("large trees", trees & (table["n_monomers"] >= LARGE_TREE))):
+        values[f"theory.{name}"] = int(part.sum())
+        values[f"theory.{name} on it"] = int((np.abs(over[part] - 1.0) < SHIFTED).sum())
     return values
 
 

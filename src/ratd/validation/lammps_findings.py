@@ -84,7 +84,7 @@ def of_lammps(table):
         "lammps.version": force["version"].iloc[0],
         "lammps.pairs": len(ours.groupby(key)),
         "lammps.force": difference,
-        "lammps.force verdict": "met" if difference < FORCE else "open",
+        "lammps.force verdict": "met" if difference < FORCE else "missed",
     }
     found = thresholds(table)
     values["lammps.grains"] = len(found.groupby(GRAIN))
@@ -105,7 +105,7 @@ def of_each(name, ratio):
         f"{name} most": ratio.max(),
         f"{name} known": len(ratio),
         f"{name} within": within,
-        f"{name} verdict": "met" if within == len(ratio) else "open",
+        f"{name} verdict": "met" if within == len(ratio) else "missed",
     }
 
 
