@@ -13,10 +13,13 @@ from ratd.geometry.neighbours import close_pairs, connected_components
 from ratd.geometry.shape import Shape
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 
-__all__ = ["GAP_TOLERANCE", "OVERLAP_TOLERANCE", "Grain", "gaps"]
+__all__ = ["GAP_TOLERANCE", "OVERLAP_TOLERANCE", "Grain", "gaps", "pressed", "seated"]
 
 GAP_TOLERANCE = 0.1
 """Two monomers touch where the gap between them is less than this many equilibrium compressions."""
+
+SEATED = 0.5
+"""Part of its compression in equilibrium from which on a contact counts as pressed."""
 
 OVERLAP_TOLERANCE = 3.0
 """Two monomers may overlap by no more than this many equilibrium compressions."""
@@ -52,6 +55,54 @@ def gaps(position, radius, pairs, surface_energy, reduced_modulus):
         delta_0 = equilibrium_compression(reduced_radius(radius[i], radius[j]), surface_energy, reduced_modulus)
         gap[p] = (math.sqrt(dx * dx + dy * dy + dz * dz) - radius[i] - radius[j]) / delta_0
     return gap
+
+
+def pressed(grain, by):
+    """Positions nearer to each other, all by one factor, so that each contact is pressed by a part of its rest or more.
+
+    Parameters
+    ----------
+    grain : Grain
+    by : float
+        Part of the equilibrium compression.
+
+    Returns
+    -------
+    (n, 3) float64 array
+        [m]
+    """
+    return (1.0 - max(0.0, np.max(_nearer(grain, by), initial=0.0))) * grain.position
+
+
+def seated(grain):
+    """Positions in which most contacts are at rest, also where the spheres of the aggregate only touch.
+
+    Spheres that only touch, as programs of others write them, are pulled together by adhesion all at once, and what
+    that sets free may part them.
+
+    Parameters
+    ----------
+    grain : Grain
+
+    Returns
+    -------
+    (n, 3) float64 array
+        [m]; those of the aggregate, or all nearer to each other by one factor, so that half of the contacts are
+        pressed to their rest, where more than half of them are pressed by less than `SEATED` of it.
+    """
+    nearer = _nearer(grain, 1.0)
+    if np.median(_nearer(grain, SEATED)) <= 0.0:
+        return grain.position
+    return (1.0 - np.median(nearer)) * grain.position
+
+
+def _nearer(grain, by):
+    """Part of its distance by which each contact must shorten to be pressed by a part of its rest."""
+    i, j = grain.contacts.T
+    constants = grain.material.surface_energy, grain.material.reduced_modulus
+    delta_0 = equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
+    gap = gaps(grain.position, grain.radius, grain.contacts, *constants)
+    return (gap + by) * delta_0 / (grain.radius[i] + grain.radius[j] + gap * delta_0)
 
 
 class Grain:

@@ -103,7 +103,8 @@ def evolve(
         Rate [1/s] at which velocities and spins decay, to bring an aggregate to rest in open space.
     contacts : (k, 2) or (k, 5) array_like, optional
         Pairs in contact at the start, which then hold the force that belongs to their overlap; all that overlap when
-        not given. In a periodic box with their images, three integers n: X_i - X_j + n L is the difference.
+        not given: of a ``grain`` whose spheres only touch, give ``grain.contacts``. In a periodic box with their
+        images, three integers n: X_i - X_j + n L is the difference.
     records : int
         Number of records after the start, evenly spaced in time.
     snapshot_every : int

@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from ratd.aggregates.grain import pressed, seated
+from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.drives.free import free
 from ratd.engine.contacts import update_contact_rates
 from ratd.engine.forces import contact_forces, working_space
 from ratd.engine.fragments import label_fragments
-from ratd.engine.layout import CONTACTS, DT_DRIFT, STEPS, VX, WX, X
+from ratd.engine.layout import CONTACTS, DT_DRIFT, LARGEST_MONOMERS, STEPS, VX, WX, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import come_to_rest, contact_blocks, monomer_rows, new_state
 from ratd.engine.step import run, until
@@ -30,6 +32,9 @@ ROUND = 50
 PATIENCE = 1000
 """Rounds after which they take a step more each: a contact that rings in time with the rounds is caught at its turning
 points only, where there is no velocity to take from it."""
+PRESSED = 0.25
+"""Part of its compression in equilibrium by which each contact is pressed, at least, where an aggregate falls apart as
+it comes to rest: under DMT nothing pulls beyond touch, so that spheres which only touch bounce off each other."""
 LIMIT = 1_000_000
 """Steps after which a grain that is not yet relaxed is given up."""
 
@@ -53,20 +58,31 @@ def relax(grain, *, law=None, timestep_factor=0.125):
 
     Raises
     ------
+    InputError
+        If it comes apart meanwhile, also when its contacts are pressed by `PRESSED` first.
     RuntimeError
         If the grain does not come to rest.
 
     Notes
     -----
-    Integrated at rest with damping; whenever the kinetic energy has fallen in a round (`round_length`), all velocities
-    are set to zero, so that the slow swaying of long arms, which contacts hardly damp, does not go on for ever.
+    Spheres that only touch are pressed together first, see `ratd.aggregates.grain.seated`. Then the aggregate is
+    integrated with damping; whenever the kinetic energy has fallen in a round (`round_length`), all velocities are set
+    to zero, so that the slow swaying of long arms, which contacts hardly damp, does not go on for ever.
     """
     law = jkr() if law is None else law
     box, integrator = open_space(), leapfrog(timestep_factor=timestep_factor)
-    state = new_state(grain.position, grain.radius, grain.material, grain.contacts, law, box, integrator)
-    state = find_rest(state, law, free(), box, integrator)
-    settle(state, law, integrator)
-    return state
+    for position in (seated(grain), pressed(grain, PRESSED)):
+        state = new_state(position, grain.radius, grain.material, grain.contacts, law, box, integrator)
+        state = find_rest(state, law, free(), box, integrator)
+        label_fragments(state)
+        whole = state.counter[LARGEST_MONOMERS]
+        if whole == grain.n_monomers:
+            settle(state, law, integrator)
+            return state
+    raise InputError(
+        f"As it comes to rest under the law of contact the aggregate comes apart: {whole} of its {grain.n_monomers} "
+        "spheres are left in the largest piece; give positions in which its contacts are at rest."
+    )
 
 
 def find_rest(state, law, drive, box, integrator):

@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from ratd.aggregates.grain import Grain, gaps
+from ratd.aggregates.grain import Grain
 from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
@@ -14,7 +14,6 @@ from ratd.experiments.relax import relax
 from ratd.engine.layout import X
 from ratd.engine.state import monomer_rows
 from ratd.laws.chosen import law_of
-from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 from ratd.laws.dmt_with_friction import dmt
 
 __all__ = ["DURATION", "GAP", "at_rest", "collide", "impact_energy"]
@@ -24,9 +23,6 @@ GAP = 20e-9
 RELAXATION_STEP = 1 / 32
 """Step of the relaxation over the shortest time of a contact. With 1/8 the friction that grows with the rate, which is
 explicit, feeds spheres of several contacts."""
-PRESSED = 0.25
-"""Part of its compression in equilibrium by which each contact is pressed, at least, where an aggregate whose spheres
-only touch falls apart as it comes to rest: under DMT nothing pulls beyond touch, so that they bounce off each other."""
 DURATION = 3e-6
 """How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
 FARTHEST = 0.02
@@ -56,36 +52,11 @@ def at_rest(grain, law="dmt"):
     Raises
     ------
     InputError
-        If it comes apart meanwhile, also when its contacts are pressed by `PRESSED` first.
+        If it comes apart meanwhile.
     """
-    try:
-        return _relaxed(grain, grain.position, law)
-    except InputError:
-        pass
-    try:
-        return _relaxed(grain, _pressed(grain), law)
-    except InputError as error:
-        raise InputError(f"As it comes to rest under the law of contact the aggregate comes apart. {error}") from error
-
-
-def _relaxed(grain, position, law):
-    """The aggregate from these positions at rest."""
-    how = {"type": grain.type, "a_eff": grain.a_eff, "seed": grain.seed}
-    grain = Grain(position, grain.radius, grain.material, **how)
     state = relax(grain, law=law_of(law, dmt), timestep_factor=RELAXATION_STEP)
     position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
-    return Grain(position, grain.radius, grain.material, **how)
-
-
-def _pressed(grain):
-    """Positions, all nearer to each other by the same part, in which each contact is pressed by `PRESSED`."""
-    i, j = grain.contacts.T
-    constants = grain.material.surface_energy, grain.material.reduced_modulus
-    delta_0 = equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
-    gap = gaps(grain.position, grain.radius, grain.contacts, *constants)
-    distance = grain.radius[i] + grain.radius[j] + gap * delta_0
-    nearer = np.max((gap + PRESSED) * delta_0 / distance, initial=0.0)
-    return (1.0 - nearer) * grain.position
+    return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
 
 
 def too_short(velocity, duration, gap=GAP):

@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import xarray as xr
 
-from ratd.aggregates.grain import Grain
+from ratd.aggregates.grain import Grain, seated
 from ratd.aggregates.strength import rolling_pressure
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
@@ -80,6 +80,9 @@ class Cluster:
             )
         if material is not None:
             cluster = _of(cluster, get_material(material))
+        position = seated(cluster)
+        if position is not cluster.position:
+            cluster = Grain(position, cluster.radius, cluster.material, seed=cluster.seed)
         self.grain = cluster
         self.radius = float(np.mean(cluster.radius**3)) ** (1.0 / 3.0)
         self.time_unit = time_unit(cluster.material, self.radius)

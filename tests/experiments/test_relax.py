@@ -1,0 +1,68 @@
+"""Aggregates come to rest whole, also those of other programs, whose spheres only touch."""
+
+import numpy as np
+import pytest
+
+import ratd
+from ratd.aggregates.grain import Grain, gaps, pressed, seated
+from ratd.base.errors import InputError
+from ratd.engine.layout import CONTACTS, LARGEST_MONOMERS
+from ratd.experiments import relax as relaxation
+from ratd.experiments.relax import relax
+
+
+def touching(seed, n=60, width=0.0, material="ice"):
+    """Spheres at exactly the sum of their radii, each on a random one of those before it."""
+    source = np.random.default_rng(seed)
+    radius = 1e-7 * np.exp(width * source.normal(size=n))
+    position = [np.zeros(3)]
+    while len(position) < n:
+        k, on = len(position), source.integers(len(position))
+        direction = source.normal(size=3)
+        place = position[on] + (radius[on] + radius[k]) * direction / np.linalg.norm(direction)
+        if all(np.linalg.norm(place - position[m]) >= radius[m] + radius[k] - 1e-16 for m in range(k)):
+            position.append(place)
+    return Grain(np.array(position), radius, material)
+
+
+def gaps_of(position, grain):
+    return gaps(position, grain.radius, grain.contacts, grain.material.surface_energy, grain.material.reduced_modulus)
+
+
+@pytest.mark.parametrize(("seed", "width", "material"), [(10, 0.0, "ice"), (12, 0.0, "ice"), (1, 0.4, "q-S")])
+@pytest.mark.parametrize("law", [ratd.laws.jkr(), ratd.laws.dmt()])
+def test_spheres_that_only_touch_come_to_rest_in_one_piece(seed, width, material, law):
+    """Without being pressed together first, the first two come apart under JKR as adhesion pulls all at once."""
+    grain = touching(seed, width=width, material=material)
+    state = relax(grain, law=law)
+    assert state.counter[LARGEST_MONOMERS] == 60 and state.counter[CONTACTS] >= grain.n_contacts == 59
+
+
+def test_equal_spheres_that_touch_are_pressed_to_their_rest():
+    grain = touching(3)
+    np.testing.assert_allclose(gaps_of(seated(grain), grain), -1.0, atol=1e-6)
+    np.testing.assert_allclose(gaps_of(pressed(grain, 0.25), grain), -0.25, atol=1e-6)
+    unequal = touching(3, width=0.4)
+    assert gaps_of(pressed(unequal, 0.25), unequal).max() == pytest.approx(-0.25, abs=1e-3)
+    assert np.median(gaps_of(seated(unequal), unequal)) == pytest.approx(-1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["BA", "BAM2"])
+def test_what_was_grown_is_left_as_it_is(kind):
+    grain = ratd.grow(kind, 150e-9, "q-S", 0)
+    assert seated(grain) is grain.position
+
+
+def test_a_spin_up_and_a_compression_begin_with_all_spheres():
+    grain = touching(10)
+    run = ratd.spin_up(grain, epsilon=0.9, max_steps=2000)
+    assert run.attrs["initial_n_monomers"] == 60 and run.attrs["initial_n_contacts"] == 59
+    run = ratd.compress(grain, strain_rate=1e-5, until_phi=0.05)
+    assert run["n_contacts"].values[0] == 59
+
+
+def test_an_aggregate_that_comes_apart_is_refused(monkeypatch):
+    monkeypatch.setattr(relaxation, "seated", lambda grain: 1.05 * grain.position)
+    monkeypatch.setattr(relaxation, "pressed", lambda grain, by: 1.05 * grain.position)
+    with pytest.raises(InputError, match="the aggregate comes apart: 1 of its 60 spheres are left"):
+        relax(touching(0))
