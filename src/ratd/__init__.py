@@ -43,6 +43,7 @@ _HOME = {
     "periodic": "geometry.box",
     "read_materials": "pipeline.config",
     "read_particles": "aggregates.particles",
+    "read_runs": "experiments.saved",
     "spin_up": "experiments.spin_up.run",
     "stretch": "experiments.compression.stretch",
     "write_particles": "aggregates.particles",

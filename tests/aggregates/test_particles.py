@@ -96,7 +96,9 @@ def test_files_as_others_write_them(tmp_path, name, text):
     ("name", "text", "said"),
     [
         ("a.txt", "0 0 20\n", "is no .txt file of spheres .there is no column radius; the columns are x, y, z"),
-        ("a.txt", "", "is no .txt file of spheres"),
+        ("a.txt", "", "is no .txt file of spheres .it is empty"),
+        ("a.txt", "0,0,0,20\n", "the columns are x; in a .txt file columns are parted by blanks or tabs"),
+        ("a.csv", "0;0;0;20\n", "the columns are x; in a .csv file columns are parted by commas"),
         (
             "a.txt",
             "0 0 0 -20\n",
@@ -189,7 +191,7 @@ def test_wrong_arguments(tmp_path, grain):
     with pytest.raises(InputError, match="frame is None; it must be a whole number"):
         read_particles(tmp_path / "a.xyz", frame=None)
     with pytest.raises(
-        InputError, match="read in m: radius has the median 21.*; those in nm would: give that as the unit."
+        InputError, match="read in m the radii have the median 21.* m; read in nm they would: give that as the unit."
     ):
         read_particles(tmp_path / "a.txt", unit="m")
     with pytest.raises(InputError, match="unit is 'pc'; allowed: m, cm"):

@@ -19,7 +19,6 @@ from ratd.experiments import command as commands
 from ratd.experiments.collision.figures.snapshots import origin_of, positions
 from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.compression.command import pressure_at
-from ratd.experiments.compression.files import runs
 from ratd.experiments.saved import KNOWN_BY
 from ratd.experiments.spin_up import command, run_files
 from ratd.pipeline import io
@@ -94,7 +93,8 @@ def test_a_cluster_is_compressed_from_its_file(tmp_path):
     done = run("compress", cluster, *how)
     assert done.exit_code == 0, done.output
     target = cluster.with_name("cluster_compressed.nc")
-    found = runs(io.read(target, "compression"))
+    found = ratd.read_runs(target)
+    assert ratd.compressive_strength(found, 0.1, 0.24)["n"] == 2
     assert [round(each["phi"].values[-1], 3) for each in found] == [0.25, 0.25]
     pressures = [pressure_at(each, 0.2) for each in found]
     said = re.search(r"P at phi 0.2 = (\S+) ± (\S+) Pa: (\S+) P_0 phi³", done.stdout)
@@ -115,11 +115,11 @@ def test_a_cluster_is_pulled_apart_from_its_file(tmp_path):
     done = run("stretch", cluster, "--material", "ice", "--strain-rate", "1e-4", "--phi", "0.2", "--starts", "2")
     assert done.exit_code == 0, done.output
     target = cluster.with_name("cluster_stretched.nc")
-    first = rows(io.read(target, "stretched"), "stretched")[0]
+    first = ratd.read_runs(target)[0]
     unmoved = ratd.read_particles(cluster, unit="nm").grain("ice")
     beside = ratd.stretch(ratd.compress(unmoved, 1e-4, 0.2, snapshots=()), 1e-4)
     assert first["tension"].values == pytest.approx(beside["tension"].values)
-    strength = io.read(target, "stretched")["tensile_strength"].values
+    strength = np.array([each.attrs["tensile_strength"] for each in ratd.read_runs(target)])
     said = re.search(r"tensile strength = (\S+) ± (\S+) Pa: (\S+) of 0.6", done.stdout)
     assert float(said[1]) == pytest.approx(strength.mean(), rel=1e-3)
     assert float(said[3]) == pytest.approx(strength.mean() / (0.6 * 0.1 / 1e-7 * 0.2**1.8), rel=0.01)
@@ -167,7 +167,8 @@ def test_a_stopped_command_goes_on_with_the_same_answer(chain, monkeypatch):
     monkeypatch.setattr(command, "spin_up", stopped)
     # what takes no time is written with what comes next; here every start at once
     monkeypatch.setattr("ratd.pipeline.partial.WORK_BETWEEN_PIECES", 0)
-    assert run("spin-up", chain, *FAST).exit_code != 0
+    done = run("spin-up", chain, *FAST)
+    assert done.exit_code == 130 and done.stderr.endswith("stopped; the same command goes on with what is kept\n")
     assert not chain.with_name("chain_spin_up.nc").exists()
     assert run("spin-up", chain, *FAST).exit_code == 0
     assert begun == [0, 1, 2, 2]
@@ -303,6 +304,7 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         done = run("show", tmp_path / f"{name}.nc")
         assert done.exit_code == 0 and said in done.stdout, done.output
         assert (tmp_path / f"{name}.png").read_bytes()[1:4] == b"PNG"
+        assert [each.sizes for each in ratd.read_runs(tmp_path / f"{name}.nc")] != []
     xr.load_dataset(tmp_path / "compress.nc")[["phi", "pressure", "snapshot_phi"]].to_netcdf(tmp_path / "part.nc")
     done = run("show", tmp_path / "part.nc")
     assert done.exit_code == 1 and "part.nc: is not the whole of a run, as ratd" in done.stderr
@@ -310,6 +312,8 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
     done = run("show", tmp_path / "compress.nc", "--unit", "um")
     assert done.exit_code == 1 and "leave out --unit and --material" in done.stderr
     ratd.evolve(np.zeros((1, 3)), [1e-7], duration=1e-9, timestep=1e-10).to_netcdf(tmp_path / "other.nc")
+    with pytest.raises(ratd.InputError, match="other.nc: holds no runs; allowed: what ratd.spin_up, compress"):
+        ratd.read_runs(tmp_path / "other.nc")
     done = run("show", tmp_path / "other.nc")
     assert done.exit_code == 1 and "other.nc: holds none of these; allowed: files of spinup" in done.stderr
 
@@ -318,9 +322,10 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
     ("arguments", "said"),
     [
         (("spin-up", "none.xyz", *FAST), "error: none.xyz: cannot be read"),
-        (("spin-up", "{bare}", *FAST, "--unit", "m"), "those in nm would: give that as the unit"),
+        (("spin-up", "{bare}", *FAST, "--unit", "m"), "read in nm they would: give that as the unit"),
         (("spin-up", "{chain}", "--material", "cheese"), "'cheese' is not a material; allowed: a-C, q-S"),
         (("show", "{chain}", "--material", "ice", "--materials-file", "none.yaml"), "none.yaml: cannot be read"),
+        (("show", "{chain}", "--material", "ice", "--materials-file", "{empty}"), "empty.txt: holds no material"),
         (
             ("spin-up", "{micron}", *FAST),
             "micron.txt: states no unit, and read in nm the radii have the median 1e-10 m",
@@ -340,7 +345,10 @@ def test_what_is_wrong_is_said_in_one_sentence(chain, arguments, said):
     chain.with_name("apart.txt").write_text("0 0 0 20\n0 0 50 20\n")
     chain.with_name("bare.txt").write_text("0 0 0 20\n0 0 40 20\n")
     chain.with_name("micron.txt").write_text("0 0 0 0.1\n0 0 0.2 0.1\n")
-    names = {name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare", "micron")} | {"chain": str(chain)}
+    chain.with_name("empty.txt").write_text("")
+    names = {name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare", "micron", "empty")} | {
+        "chain": str(chain)
+    }
     done = run(*[argument.format(**names) for argument in arguments])
     assert done.exit_code != 0 and said in done.output and "Traceback" not in done.output
 

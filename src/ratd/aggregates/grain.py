@@ -9,6 +9,7 @@ from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.materials import get_material
+from ratd.base.words import plural
 from ratd.geometry.neighbours import close_pairs, connected_components
 from ratd.geometry.shape import Shape
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
@@ -215,7 +216,7 @@ def _check_arrays(position, radius):
             f"position has shape {position.shape} and radius {radius.shape}; they must be (n, 3) and (n,)."
         )
     if len(radius) < 2:
-        raise InputError(f"The aggregate has {len(radius)} monomers; it needs at least 2.")
+        raise InputError(f"The aggregate has {plural(len(radius), 'monomer')}; it needs at least 2.")
     for name, array in (("position", position), ("radius", radius)):
         wrong = np.flatnonzero(~np.isfinite(array.reshape(len(radius), -1)).all(axis=1))
         if len(wrong):
@@ -252,8 +253,8 @@ def _check_overlap(radius, material, contacts, gap):
         unit = _compression(radius[i], radius[j], material)
         raise InputError(
             f"Monomers {i} and {j} overlap by {-gap[worst]:.3g} equilibrium compressions, {-gap[worst] * unit:.3g} m; "
-            f"at most {OVERLAP_TOLERANCE:g} are allowed, {OVERLAP_TOLERANCE * unit:.3g} m. Are all lengths in m? "
-            "Monomers are counted from 0."
+            f"at most {OVERLAP_TOLERANCE:g} are allowed, {OVERLAP_TOLERANCE * unit:.3g} m. "
+            "Is the unit of the lengths right? Monomers are counted from 0."
         )
 
 

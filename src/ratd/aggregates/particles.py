@@ -14,7 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_dust, is_number, is_whole, likely_unit, not_dust
+from ratd.base.checks import LARGEST_RADIUS, SMALLEST_RADIUS, is_dust, is_number, is_whole, likely_unit
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
 from ratd.pipeline.atomic import write_text
@@ -35,6 +35,7 @@ _OTHER_NAMES = {"micron": "um", "microns": "um", "micrometer": "um", "a": "angst
 """Other names of `UNITS`."""
 _UNIT = re.compile(r"[\s\[(_]([a-z]+)")
 _TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
+_PARTED = {",": "commas", " ": "blanks or tabs"}
 _XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
 SUFFIXES = (*_TABLES, *_XYZ, *_DUMP)
 
@@ -98,7 +99,10 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         table, box, stated = reader(path, frame)
         missing = [name for name in ("x", "y", "z", "radius") if name not in table]
         if missing:
-            raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}")
+            hint = ""
+            if len(table.columns) == 1 and path.suffix in _TABLES:
+                hint = f"; in a {path.suffix} file columns are parted by {_PARTED[_TABLES[path.suffix]]}"
+            raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}{hint}")
         values = np.stack([_numbers(table[name], name) for name in ("x", "y", "z", "radius")], axis=1)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({error.strerror})") from error
@@ -156,8 +160,11 @@ def _check_unit(path, unit, radius):
             f"{path}: states no unit, and read in {_USUAL} the radii have the median {np.median(metres):g} m: give the "
             f"unit, which is {likely} in all likelihood."
         )
-    hint = "" if likely is None else f"; those in {likely} would: give that as the unit"
-    raise InputError(f"{path}: read in {unit or _USUAL}: {not_dust(metres)}{hint}.")
+    hint = "" if likely is None else f"; read in {likely} they would: give that as the unit"
+    raise InputError(
+        f"{path}: read in {unit or _USUAL} the radii have the median {np.median(metres):g} m, and those of dust lie "
+        f"between {SMALLEST_RADIUS:g} and {LARGEST_RADIUS:g} m{hint}."
+    )
 
 
 def _factor(unit):
@@ -187,7 +194,9 @@ def _read_table(path, frame):
             lines[k] = line.lstrip("# ")
             break
     lines = [line.partition("#")[0].strip() for line in lines]
-    lines = [line for line in lines if line] or [""]
+    lines = [line for line in lines if line]
+    if not lines:
+        raise ValueError("it is empty")
     words = _words(lines[0], separator)
     named = any(re.match(r"[a-z]", word) and word not in ("nan", "inf") for word in words)
     table = pd.read_csv(StringIO("\n".join(lines[int(named) :])), sep=separator, header=None)

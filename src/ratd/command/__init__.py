@@ -57,6 +57,10 @@ class _Commands(click.Group):
                 return super().invoke(context)
         except click.exceptions.Exit:  # a RuntimeError too: --help has said all
             raise
+        except KeyboardInterrupt:
+            kept = "" if context.invoked_subcommand == "show" else "; the same command goes on with what is kept"
+            click.echo(f"stopped{kept}", err=True)
+            sys.exit(130)
         except (InputError, FileError, RuntimeError) as error:
             click.echo(f"error: {error}", err=True)
             sys.exit(1)

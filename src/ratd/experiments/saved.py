@@ -1,11 +1,13 @@
-"""Files of runs that ``python -m ratd show`` is given: those of ratd, and runs that users saved with `to_netcdf`."""
+"""Files of runs: those that ratd writes, and runs that users saved with `to_netcdf`."""
+
+from importlib import import_module
 
 import netCDF4
 import xarray as xr
 
-from ratd.base.errors import FileError
+from ratd.base.errors import FileError, InputError
 
-__all__ = ["KNOWN_BY", "kind_in", "runs_in"]
+__all__ = ["KNOWN_BY", "kind_in", "read_runs"]
 
 KNOWN_BY = {
     "spinup": {"fragment_omega", "end_reason"},
@@ -14,6 +16,13 @@ KNOWN_BY = {
     "collisions": {"cluster", "impact_energy"},
 }
 """Kind of file -> variables and attributes that only a run of this kind has, as the functions of `ratd` return it."""
+_READERS = {
+    "spinup": ("spin_up.run_files", "read_runs"),
+    "stretched": ("compression.files", "read_pulls"),
+    "compression": ("compression.files", "read_runs"),
+    "collisions": ("collision.files", "read_runs"),
+}
+"""Kind of file -> module of `ratd.experiments` and its function that reads such a file of ratd."""
 
 
 def kind_in(path):
@@ -45,18 +54,31 @@ def kind_in(path):
     return next((kind for kind, own in KNOWN_BY.items() if own <= names), None), False
 
 
-def runs_in(path, read):
-    """Runs of a file of ratd, or the one that its user saved with `to_netcdf`.
+def read_runs(path):
+    """Runs of a file of the command line or the pipeline, or the one that its user saved with `to_netcdf`.
 
     Parameters
     ----------
     path : path-like
-    read : callable
-        ``read(path)`` gives the runs of a file of ratd.
 
     Returns
     -------
     list of xarray.Dataset
-        As the functions of `ratd` return them.
+        As `ratd.spin_up`, `ratd.compress`, `ratd.stretch` or `ratd.collide` returned them; those of compressions and
+        pulls without the state at their end, so that they cannot be pulled on.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or is damaged.
+    InputError
+        If it holds no runs.
     """
-    return read(path) if kind_in(path)[1] else [xr.load_dataset(path, engine="netcdf4", decode_times=False)]
+    kind, by_ratd = kind_in(path)
+    if kind not in _READERS:
+        what = "holds no runs" if kind is None else f"is a file of {kind}"
+        raise InputError(f"{path}: {what}; allowed: what ratd.spin_up, compress, stretch or collide returned, saved.")
+    if not by_ratd:
+        return [xr.load_dataset(path, engine="netcdf4", decode_times=False)]
+    module, reader = _READERS[kind]
+    return getattr(import_module(f"ratd.experiments.{module}"), reader)(path)

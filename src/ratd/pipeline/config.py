@@ -24,6 +24,8 @@ _Validator = jsonschema.validators.extend(
 OWN_FOLDERS = ("benchmarks", "config", "docs", "examples", "profiles", "src", "tests", "workflow")
 """Folders of the project, in which no results may lie."""
 
+LONGEST = 120
+"""Characters of a wrong value that a message repeats."""
 _MATERIALS_LAYOUT = Path(__file__).with_name("materials.schema.yaml")
 _MATERIAL_KEYS = {
     "surface_energy_mJ_m2": ("surface_energy", MJ_PER_M2),
@@ -143,9 +145,10 @@ def _sentence(error, layout, inside):
         if "$ref" in part:
             part = layout["$defs"][part["$ref"].rpartition("/")[2]]
         return f"the key {f'{key}.{missing}' if key else missing} is missing; allowed: {part['description']}"
-    return (
-        f"{key or 'it'} is {error.instance!r}{_text(error)}; allowed: {error.schema.get('description', error.message)}"
-    )
+    value = repr(error.instance)
+    if len(value) > LONGEST:
+        value = f"{value[:LONGEST]} ..."
+    return f"{key or 'it'} is {value}{_text(error)}; allowed: {error.schema.get('description', error.message)}"
 
 
 def _text(error):
@@ -187,9 +190,11 @@ def read_materials(path):
         One sentence with the file, the material and the key.
     """
     content = read_yaml(path)
+    if not content:
+        raise InputError(f"{path}: holds no material; allowed: a name and its values, as in config/materials.yaml")
     check_layout(content, read_yaml(_MATERIALS_LAYOUT), str(path))
     table = dict(MATERIALS)
-    for name, entry in (content or {}).items():
+    for name, entry in content.items():
         if name in MATERIALS:
             raise InputError(f"{path}: {name!r} is a material of ratd already; allowed: any other name")
         try:

@@ -14,14 +14,12 @@ from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.run import DURATION, GAP, at_rest, collide, too_short
 from ratd.experiments.command import OF_STARTS, Finite, aggregate, aggregate_options, answer, part_done, several
 from ratd.experiments.collision.stages import contact_of
-from ratd.experiments.saved import runs_in
+from ratd.experiments.saved import read_runs
 from ratd.laws.chosen import law_of
 from ratd.laws.dmt_with_friction import dmt
 from ratd.pictures.collision_page import collision_page
 from ratd.pictures.style import save
-from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
-from ratd.pipeline.blocks import rows
 from ratd.pipeline.provenance import provenance, source_hash
 
 __all__ = ["command", "show"]
@@ -108,7 +106,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    found = [_as_row(run, path) for run in runs_in(path, lambda path: rows(io.read(path, "collisions"), "collisions"))]
+    found = [_as_row(run, path) for run in read_runs(path)]
     n = found[0]["n_monomers"].item()
     lines = [
         f"{plural(len(found), 'rotation')} of {plural(n, 'sphere')} at {found[0]['velocity'].item():g} m/s, mean ± "

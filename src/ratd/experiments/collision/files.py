@@ -13,11 +13,12 @@ from ratd.aggregates.mrn import sample_length
 from ratd.base.units import NM
 from ratd.experiments.collision.fragmentation import fragmentation
 from ratd.geometry.neighbours import close_pairs
+from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.blocks import rows as rows_of
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["SERIES", "cluster_row", "clusters_of", "collision_row"]
+__all__ = ["SERIES", "cluster_row", "clusters_of", "collision_row", "read_runs"]
 
 _REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
 
@@ -253,6 +254,11 @@ def collision_row(run, **names):
         row["snapshot_piece"] = ("snapshot_monomer", _ranked(run).ravel())
         row["radius"] = ("monomer", run["radius"].values)
     return row
+
+
+def read_runs(path):
+    """Collisions of a file, list of xarray.Dataset as `collision_row` makes them."""
+    return rows_of(io.read(path, "collisions"), "collisions")
 
 
 def _values(run, found, several):

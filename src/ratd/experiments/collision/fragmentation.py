@@ -23,6 +23,9 @@ __all__ = [
 STICKING = 0.15
 """X above which two clusters are said to stick (Kalweit & Drikakis 2006; Umstaetter & Urbassek 2020, Sect. 3.1)."""
 
+_N_S = "mass outside of the two largest pieces over that of all"
+_X = "mass of the largest piece less that of the second over that of all"
+
 
 def fragmentation_number(largest, second, whole):
     """N_s = 1 - (M_1 + M_2)/(2 M) [1], `whole` being the mass 2 M of both clusters (Eq. 9)."""
@@ -45,8 +48,10 @@ def fragmentation(run):
     Returns
     -------
     xarray.Dataset
-        `N_s` and `X`; along ``piece``, the heaviest first, `piece_mass` [kg], `piece_members`, `piece_largest_radius`
-        [m], `piece_of_a` (part of the mass that came with the first cluster). Single spheres are pieces too.
+        `N_s`, mass outside of the two largest pieces over that of all, and `X`, mass of the largest piece less that of
+        the second over that of all. Along ``piece``, the heaviest first, `piece_mass` [kg], `piece_members`,
+        `piece_largest_radius` [m], `piece_of_a` (part of the mass that came with the first cluster). Single spheres are
+        pieces too.
 
     Raises
     ------
@@ -70,8 +75,16 @@ def fragmentation(run):
     whole = masses[order].sum()  # of the pieces, so that nothing is missing by rounding where all is in two of them
     return xr.Dataset(
         {
-            "N_s": ((), fragmentation_number(first, second, whole), {"units": "1", "long_name": "N_s, Eq. 9"}),
-            "X": ((), agglomeration(first, second, whole), {"units": "1", "long_name": "X, Eq. 10"}),
+            "N_s": (
+                (),
+                fragmentation_number(first, second, whole),
+                {"units": "1", "long_name": "mass outside of the two largest pieces over that of all"},
+            ),
+            "X": (
+                (),
+                agglomeration(first, second, whole),
+                {"units": "1", "long_name": "mass of the largest piece less that of the second over that of all"},
+            ),
             "piece_mass": ("piece", masses[order], {"units": "kg", "long_name": "mass of a piece"}),
             "piece_members": ("piece", members[order], {"units": "1", "long_name": "spheres of a piece"}),
             "piece_largest_radius": (

@@ -20,11 +20,10 @@ from ratd.experiments.command import (
 )
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
-from ratd.experiments.compression.files import run_row, runs
+from ratd.experiments.compression.files import run_row
 from ratd.experiments.compression.run import FASTEST, compress
-from ratd.experiments.saved import runs_in
+from ratd.experiments.saved import read_runs
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
-from ratd.pipeline import io
 from ratd.pipeline.atomic import write_text
 from ratd.pipeline.provenance import provenance, source_hash
 
@@ -92,7 +91,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    found = runs_in(path, lambda path: runs(io.read(path, "compression")))
+    found = read_runs(path)
     first = found[0].attrs
     lines = [
         f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, mean ± standard deviation; static "

@@ -13,7 +13,18 @@ from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["MONOMER", "REFERENCE", "RUN", "cluster_row", "read_cluster", "read_run", "run_row", "runs", "stretched_row"]
+__all__ = [
+    "MONOMER",
+    "REFERENCE",
+    "RUN",
+    "cluster_row",
+    "read_cluster",
+    "read_pulls",
+    "read_runs",
+    "run_row",
+    "runs",
+    "stretched_row",
+]
 
 REFERENCE = "Kataoka et al. (2013), A&A 554, A4"
 MONOMER = {
@@ -182,6 +193,12 @@ def runs(dataset):
     return found
 
 
-def read_run(path):
-    """The first run of a file, xarray.Dataset."""
-    return runs(io.read(path, "compression"))[0]
+def read_runs(path):
+    """Runs of a file, see `runs`."""
+    return runs(io.read(path, "compression"))
+
+
+def read_pulls(path):
+    """Pulls of a file, list of xarray.Dataset, as `ratd.stretch` returns them but for the state at the end."""
+    file = io.read(path, "stretched")
+    return [run.assign_attrs(surface_energy=file["surface_energy"].item()) for run in rows(file, "stretched")]

@@ -209,7 +209,8 @@ def strain_dataset(state, rows, parts):
     variables["radius"] = ("monomer", radius.copy(), {"units": "m", "long_name": "radii"})
     for name, array in state._asdict().items():
         dims = tuple(f"{name}_{axis}" for axis in range(array.ndim))
-        variables[f"state_{name}"] = (dims, array.copy())
+        about = {"units": "1", "long_name": f"{name} of the state of the engine at the end, SI units"}
+        variables[f"state_{name}"] = (dims, array.copy(), about)
     attributes = {
         "steps": int(state.counter[STEPS]),
         "timestep": float(state.scalar[DT]),

@@ -23,10 +23,8 @@ from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
 from ratd.experiments.compression.stretch import AXES, stretch
-from ratd.experiments.saved import runs_in
+from ratd.experiments.saved import read_runs
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
-from ratd.pipeline import io
-from ratd.pipeline.blocks import rows
 from ratd.pipeline.provenance import provenance, source_hash
 
 __all__ = ["command", "show"]
@@ -89,7 +87,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    found = runs_in(path, _pulls)
+    found = read_runs(path)
     first = found[0].attrs
     expected = [formula(run) for run in found]
     names = "tensile_strength", "phi_strength", "residual_pressure"
@@ -106,12 +104,6 @@ def show(path, out):
     figure = Path(f"{out}.png")
     save(_figure(found, expected[0], ways), figure)
     return [*lines, f"{figure} written"]
-
-
-def _pulls(path):
-    """Pulls of a file, as `ratd.stretch` returns them but for the state at the end."""
-    file = io.read(path, "stretched")
-    return [run.assign_attrs(surface_energy=file["surface_energy"].item()) for run in rows(file, "stretched")]
 
 
 def formula(run):

@@ -8,7 +8,7 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.statistics import mean_of
-from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_run, runs
+from ratd.experiments.compression.files import MONOMER, REFERENCE, RUN, read_cluster, read_runs, runs
 from ratd.experiments.compression.grow import grown
 from ratd.experiments.compression.strain import LABELS
 from ratd.laws.contact_constants import reduced_radius, rolling_energy
@@ -297,7 +297,7 @@ def snapshots_at(found, wanted):
 
 def snapshots(files, settings, say):
     """Positions of one run at some filling factors, wrapped into the box about its middle, of those that it passed."""
-    run = read_run(files["run"])
+    run = read_runs(files["run"])[0]
     wanted = list(snapshots_at(run["snapshot_phi"].values, settings["phi"]).values())
     if not wanted:
         raise InputError(

@@ -17,11 +17,11 @@ from ratd.experiments.command import (
     several,
     started,
 )
-from ratd.experiments.saved import runs_in
+from ratd.experiments.saved import read_runs
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
-from ratd.experiments.spin_up.run_files import read_runs, run_row
+from ratd.experiments.spin_up.run_files import run_row
 from ratd.pictures.grain_page import grain_page
 from ratd.pictures.style import save
 from ratd.pipeline.atomic import write_text
@@ -89,7 +89,7 @@ def show(path, out):
     list of str
         What to say.
     """
-    runs = runs_in(path, read_runs)
+    runs = read_runs(path)
     marks = [disruption(run) for run in runs]
     n = runs[0].attrs["initial_n_monomers"]
     lines = [f"{plural(len(runs), 'start')} of {plural(n, 'monomer')}, mean ± standard deviation:"]

@@ -1,6 +1,6 @@
 """The page on which a cluster in its box is turned and stepped through."""
 
-from ratd.experiments.compression.files import read_run
+from ratd.experiments.compression.files import read_runs
 from ratd.pictures.box_page import box_page
 
 __all__ = ["page", "page_of"]
@@ -15,4 +15,4 @@ def page_of(run):
 
 def page(files, settings, say):
     """The page of a job of the pipeline, from the file with the run."""
-    return {"page": page_of(read_run(files["run"]))}
+    return {"page": page_of(read_runs(files["run"])[0])}
