@@ -82,7 +82,10 @@ def material_options(use, required=False):
 
     def own(context, parameter, path):
         if path is not None:
-            context.meta[__name__] = read_materials(path)
+            table = read_materials(path)
+            if table.keys() == MATERIALS.keys():
+                raise InputError(f"{path}: holds no material; allowed: names and values, as in config/materials.yaml")
+            context.meta[__name__] = table
 
     def decorate(function):
         # the file is read first, wherever it stands on the line

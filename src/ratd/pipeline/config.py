@@ -190,11 +190,9 @@ def read_materials(path):
         One sentence with the file, the material and the key.
     """
     content = read_yaml(path)
-    if not content:
-        raise InputError(f"{path}: holds no material; allowed: a name and its values, as in config/materials.yaml")
     check_layout(content, read_yaml(_MATERIALS_LAYOUT), str(path))
     table = dict(MATERIALS)
-    for name, entry in content.items():
+    for name, entry in (content or {}).items():
         if name in MATERIALS:
             raise InputError(f"{path}: {name!r} is a material of ratd already; allowed: any other name")
         try:

@@ -148,7 +148,8 @@ def read_data(folder="."):
     scheme = Path(folder, quasi_static_document.DATA)
     return (
         tables
-        | {"reference": pd.read_csv(data / "reference.csv"), "balance": balance(folder)}
+        | {name: pd.read_csv(data / f"{name}.csv") for name in ("reference", "growth_reference")}
+        | {"balance": balance(folder)}
         | {name: pd.read_csv(scheme / f"{name}.csv") for name in quasi_static_document.CHECKS}
     )
 
@@ -158,7 +159,8 @@ def values(tables):
     found = {}
     for check in (*CHECKS, "reference", "balance"):
         of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
-        found |= of(tables[check])
+        beside = (tables["growth_reference"],) if check == "growth" else ()
+        found |= of(tables[check], *beside)
     found |= lammps_spin_up.findings(tables["lammps_spin_up"])
     found |= lammps_single.findings(tables["lammps_single"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
@@ -188,7 +190,7 @@ def numbers(tables):
         "lammps": lammps_findings.thresholds(tables["lammps"]),
         "lammps_spin_up": lammps_spin_up.one_each(tables["lammps_spin_up"]),
         "lammps_single": tables["lammps_single"],
-        "growth": pd.DataFrame(findings.grown(tables["growth"])),
+        "growth": pd.DataFrame(findings.grown(tables["growth"], tables["growth_reference"])),
         "migration": pd.DataFrame(findings.migrations(tables["growth"])),
         "energy": findings.balances(tables["energy"]),
         "theory": tables["theory"],

@@ -1,4 +1,4 @@
-"""Growth: aggregates of equal monomers against an independent generator, isotropy, and the two ways to migrate.
+"""Growth: aggregates of equal monomers for tests/reference/growth.py, isotropy, and the two ways to migrate.
 
 Where the small monomers of a grain with the radii of the ensemble lie is measured along with its form.
 
@@ -43,12 +43,6 @@ COLUMNS = {
     **{f"place_{axis}": ("1", f"{axis} component of the direction to where an arrival ended") for axis in "xyz"},
 }
 KIND = table_kind("growth", "Growth", COLUMNS)
-EXPECTED_POROSITY = {
-    ("BA", 32): 0.79, ("BA", 128): 0.845, ("BA", 256): 0.849, ("BA", 512): 0.850,
-    ("BAM1", 32): 0.64, ("BAM1", 128): 0.72, ("BAM1", 256): 0.75, ("BAM1", 512): 0.75,
-    ("BAM2", 32): 0.46, ("BAM2", 128): 0.55, ("BAM2", 256): 0.58, ("BAM2", 512): 0.61,
-}  # fmt: skip
-"""Porosities of an independent generator, which migrates to the nearest place, each +-0.01."""
 
 
 def arrival(radius, material, seed):

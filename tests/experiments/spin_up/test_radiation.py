@@ -145,6 +145,15 @@ def test_what_a_porous_grain_loses():
     assert weak == pytest.approx(0.25, rel=1e-3) and strong == pytest.approx(1.0, rel=1e-3)
 
 
+def test_what_a_porous_grain_gains_that_catches_light_as_wide_as_it_is():
+    """Torque goes with width^(2 + 2.7), drag with width^4; the width is the root of the ratio."""
+    gained = omega_rat(1e-7, 1e-6, inertia_ratio=2.0, wide=True) / omega_rat(1e-7, 1e-6)
+    assert gained == pytest.approx(2.0 ** (0.5 * 0.7), rel=1e-3)
+    law = power_law(1e8, 1.5)
+    solid, wide = (destroyed_sizes(law, 100.0, inertia_ratio=lambda a: 2.0 + 0 * a, wide=w)[0] for w in (False, True))
+    assert wide < destroyed_sizes(law, 100.0)[0] < solid
+
+
 def power_law(level, power):
     """A power of size, `level` [rad/s] at `SPLIT`."""
     return lambda size: level * (np.asarray(size) / SPLIT) ** -power

@@ -148,6 +148,7 @@ def surviving(
     *,
     around=DIFFUSE,
     porous=False,
+    wide=False,
     coefficient=None,
     materials=None,
     draws=400,
@@ -168,7 +169,9 @@ def surviving(
     around : radiation.Surroundings
     porous : bool
         Whether gas hits all of the porous grain (`radiation.gas_drag`), or as much of it as of a solid sphere of its
-        mass. The torque is that of a_eff in both.
+        mass.
+    wide : bool
+        Whether light finds it as wide as the gas then does (`radiation.omega_rat`); else the torque is that of a_eff.
     coefficient : float, optional
         See `radiation.infrared_damping`; that of each material when not given, `radiation.infrared_of`.
     materials : optional
@@ -202,7 +205,7 @@ def surviving(
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
             for which, (omega, spread) in candidates.items():
-                found = _sizes(omega, spread, strengths, around, ratio, infrared)
+                found = _sizes(omega, spread, strengths, around, ratio, infrared, wide)
                 rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
 

@@ -29,6 +29,15 @@ NONE = "none"
 """What stands in a document where no size is destroyed."""
 
 
+WAYS = {
+    "": {},
+    " porous": {"porous": True},
+    " wide": {"porous": True, "wide": True},
+    " graphite": {"coefficient": INFRARED},
+}
+"""Ways to count, by the word behind their slots."""
+
+
 def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", shown=("q-S", 1e2), **options):
     """Smallest and greatest sizes that radiation destroys.
 
@@ -43,21 +52,22 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     shown : (str, float)
         Material and strength for which variants are told.
     **options
-        Of `surviving`, but `porous`.
+        Of `surviving`, but those of `WAYS`.
 
     Returns
     -------
     dict
         "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
-        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, or with
-        " graphite", where the grain sheds infrared light as graphite does (`INFRARED`). With " greatest" behind it the
-        largest size that is destroyed, `NONE` also where there is no end to them, and with " range" the text of both
-        drags. With "over" for "ours" ours over the printed one. "radiation.most error" is the greatest relative
-        error of ours for the material of `shown`. For `shown` also, without errors, with " first" the first loss in
-        place of the mark, with " DMT" omega `DMT` times as great, and with a name of `SURROUNDINGS`.
+        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, with
+        " wide" where light does so too, or with " graphite", where the grain sheds infrared light as graphite does.
+        With " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them, and
+        with " range" the text of both drags. With "over" for "ours" ours over the printed one. "radiation.most error"
+        is the greatest relative error of ours for the material of `shown`. For `shown` also, without errors, with
+        " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great, and with a name of
+        `SURROUNDINGS`.
     """
     values = {}
-    for behind, how in (("", {}), (" porous", {"porous": True}), (" graphite", {"coefficient": INFRARED})):
+    for behind, how in WAYS.items():
         values |= _sizes(table, grown, strengths, behind, mark=mark, **how, **options)
     for key in [key for key in values if key.endswith((" ours", " printed"))]:
         ends = [_text(values[key + behind]) for behind in ("", " porous")]
