@@ -1,5 +1,7 @@
 """`ratd.collide`: what comes back, what is refused, the same bits after a kill; two spheres and their solution."""
 
+import math
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -156,6 +158,24 @@ def test_sticking_velocity():
     assert breaking_energy_of(0.57e-6, 0.57e-6, SILICA) == pytest.approx(1.47e-17, rel=5e-3)
     unequal = sticking_velocity(0.3e-6, 0.57e-6, SILICA, 0.5e-9)
     assert meet(0.98 * unequal).n_contacts[-1] == 1 and meet(1.02 * unequal).n_contacts[-1] == 0
+
+
+@pytest.mark.parametrize(("a_i", "a_j"), [(50e-9, 0.5e-6), (50e-9, 0.1e-6), (70e-9, 0.3e-6)])
+def test_the_longest_step_of_the_document_does_for_two_spheres(a_i, a_j):
+    """3.5 ps, a quarter of the time of the damping: what single impacts keep is that of a step of 0.25 ps."""
+    left = []
+    for timestep in (3.5e-12, 0.25e-12):
+        for part in (0.1, 0.4, 0.7, 0.9):
+            aside = part * (a_i + a_j)
+            position = [[0.0, 0.0, 0.0], [math.sqrt((a_i + a_j) ** 2 - aside**2) + 1e-11, aside, 0.0]]
+            run = evolve(
+                position, [a_i, a_j], [[20.0, 0, 0], [0, 0, 0]], None, "silica", law=ratd.laws.dmt(), duration=5e-9,
+                timestep=timestep, damping="explicit", records=1, balance=None,
+            )  # fmt: skip
+            energy = (run["kinetic_translation"] + run["kinetic_spin"]).values
+            left.append(energy[-1] / energy[0])
+    assert np.ptp(left[:4]) > 0.1
+    np.testing.assert_allclose(left[:4], left[4:], atol=1e-5)
 
 
 @pytest.mark.parametrize("friction", ["velocity", "spring"])

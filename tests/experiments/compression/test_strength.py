@@ -1,5 +1,7 @@
 """Fits of the compressive strength to data that are known."""
 
+import warnings
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -189,7 +191,12 @@ def test_a_range_that_no_run_covers_has_no_strength():
     run["pressure_tensor"] = (("record", "component"), np.zeros((400, 6)))
     for name in ("n_contacts", "work", "energy_residual", "stored_normal", "dissipated_rolling"):
         run[name] = ("record", phi)
-    assert ratd.compressive_strength(run, 0.12, 0.4)["exponent"] == pytest.approx(3.0, rel=1e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = ratd.compressive_strength(run.assign_attrs(static_from=0.12), 0.12, 0.4)
+    assert found["exponent"] == pytest.approx(3.0, rel=1e-3)
+    with pytest.warns(UserWarning, match="static from phi = 0.2 on: between low = 0.12 and there inertia presses"):
+        ratd.compressive_strength(run.assign_attrs(static_from=0.2), 0.12, 0.4)
     for low, high, said in (
         (0.03, 0.12, "no run covers the filling factors from 0.03 to 0.12"),
         (0.12, 0.6, "no run covers"),

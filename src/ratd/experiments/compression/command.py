@@ -93,15 +93,18 @@ def show(path, out):
     """
     found = read_runs(path)
     first = found[0].attrs
+    late = first["static_from"] > found[0]["phi"].values[0]
+    static = f"phi = {first['static_from']:.3g} on" if late else "the start"
     lines = [
-        f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, mean ± standard deviation; static "
-        f"from phi = {first['static_from']:.3g} on, P_0 = {first['rolling_pressure']:.4g} Pa:"
+        f"{plural(len(found), 'start')} of {plural(first['n_monomers'], 'monomer')}, mean ± standard deviation (of one "
+        f"cluster; others differ by 15 to 20 %); static from {static}, P_0 = {first['rolling_pressure']:.4g} Pa:"
     ]
     for phi in TOLD:
         pressures = [pressure_at(run, phi) for run in found]
         if np.isfinite(pressures).any():
             over = np.nanmean(pressures) / (first["rolling_pressure"] * phi**3)
-            lines.append(f"{answer(f'P at phi {phi:g}', pressures, 'Pa')}: {over:.3g} P_0 phi³")
+            unlike = ", not static yet" if phi < first["static_from"] else ""
+            lines.append(f"{answer(f'P at phi {phi:g}', pressures, 'Pa')}: {over:.3g} P_0 phi³{unlike}")
     figure = Path(f"{out}.png")
     save(_figure(found), figure)
     lines.append(f"{figure} written")

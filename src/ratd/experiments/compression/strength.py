@@ -1,5 +1,6 @@
 """What compressions say of the compressive strength: ratios to P_0 phi^3, fits, and who dissipates the energy."""
 
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -417,11 +418,23 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     InputError
         If there is no run, one is no compression, they differ in more than their seeds, one is given twice, or none
         covers the range, with some pressure above 0.
+
+    Warns
+    -----
+    UserWarning
+        If a run is not static from `low` on.
     """
     found = list(run) if isinstance(run, list | tuple) else [run]
     _check_runs(found)
     if not (is_number(low) and is_number(high) and 0.0 < low < high):
         raise InputError(f"low and high are {low!r} and {high!r}; they must be numbers above 0, the lower one first.")
+    static = max(each.attrs.get("static_from", 0.0) for each in found)
+    if static > low:
+        warnings.warn(
+            f"the compression is static from phi = {static:.2g} on: between low = {low:g} and there inertia presses.",
+            UserWarning,
+            stacklevel=2,
+        )
     first = min(bins(each["phi_mean"].values[:1])[0] for each in found)
     last = max(bins(each["phi_mean"].values[-1:])[0] for each in found)
     table = xr.Dataset({"phi": ("phi_bin", BIN ** (np.arange(first, last + 1) + 0.5))})
