@@ -432,8 +432,8 @@ def test_plan_names_every_piece_once():
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
-            "forces", "lammps", "mark_rules", "relaxation", "compression", "dense", "box_at_rest", "quasi_static",
-            "remnant",
+            "collision_step", "forces", "lammps", "mark_rules", "relaxation", "compression", "dense", "box_at_rest",
+            "quasi_static", "remnant",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and kinds.kind_of(f"validation_{check}")

@@ -66,6 +66,7 @@ HOMES = {
             "relaxation",
             "energy",
             "energy_step",
+            "collision_step",
             "frames",
             "forces",
             "lammps",

@@ -20,6 +20,7 @@ from ratd.pipeline.documents import command, fill
 from ratd.validation import (
     figures,
     findings,
+    growth_findings,
     lammps_findings,
     lammps_single,
     lammps_spin_up,
@@ -35,7 +36,7 @@ TEMPLATE = Path("docs/templates/validation.md")
 DOCUMENT = Path("docs/validation.md")
 CHECKS = (
     "pull_off", "lammps", "forces", "frames", "energy_step", "energy", "relaxation", "growth", "theory", "damping",
-    "literal", "compression", "dense", "box_at_rest",
+    "literal", "compression", "dense", "box_at_rest", "collision_step",
 )  # fmt: skip
 """One file each, with a row a case."""
 ELSEWHERE = ("mark_rules",)
@@ -158,9 +159,11 @@ def values(tables):
     """Values of the slots, from what `read_data` gives: name of a slot -> number or text."""
     found = {}
     for check in (*CHECKS, "reference", "balance"):
-        of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
-        beside = (tables["growth_reference"],) if check == "growth" else ()
-        found |= of(tables[check], *beside)
+        if check == "growth":
+            found |= growth_findings.of_growth(tables[check], tables["growth_reference"])
+        else:
+            of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
+            found |= of(tables[check])
     found |= lammps_spin_up.findings(tables["lammps_spin_up"])
     found |= lammps_single.findings(tables["lammps_single"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
@@ -190,8 +193,8 @@ def numbers(tables):
         "lammps": lammps_findings.thresholds(tables["lammps"]),
         "lammps_spin_up": lammps_spin_up.one_each(tables["lammps_spin_up"]),
         "lammps_single": tables["lammps_single"],
-        "growth": pd.DataFrame(findings.grown(tables["growth"], tables["growth_reference"])),
-        "migration": pd.DataFrame(findings.migrations(tables["growth"])),
+        "growth": pd.DataFrame(growth_findings.grown(tables["growth"], tables["growth_reference"])),
+        "migration": pd.DataFrame(growth_findings.migrations(tables["growth"])),
         "energy": findings.balances(tables["energy"]),
         "theory": tables["theory"],
         "damping": times.groupby(keys, dropna=False)["ratio"].agg(["size", "median", "min", "max"]).reset_index(),

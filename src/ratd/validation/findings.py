@@ -5,26 +5,22 @@ a ``verdict``: met, missed, or open where the errors do not decide.
 """
 
 import numpy as np
-from scipy.stats import chi2, kstest
 
-from ratd.base.measured import median
-from ratd.base.statistics import median_of
+from ratd.base.measured import Measured, median
+from ratd.base.statistics import mean_of, median_of
 from ratd.experiments.compression.beside_lammps import EDGES, of_box, of_lammps
 from ratd.experiments.compression.beside_lammps import of_dense as dense_over
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.validation.damping import RATE, RESOLUTION, WAITING
-from ratd.validation.growth import NOT
 
 __all__ = [
-    "arrival_values",
     "exponents",
-    "grown",
     "limits",
-    "migrations",
     "of_balance",
     "of_box_at_rest",
+    "of_collision_step",
     "of_compression",
     "of_damping",
     "of_dense",
@@ -32,7 +28,6 @@ __all__ = [
     "of_energy_step",
     "of_forces",
     "of_frames",
-    "of_growth",
     "of_literal",
     "of_pull_off",
     "of_reference",
@@ -41,6 +36,7 @@ __all__ = [
     "off_the_answer",
     "ratios",
     "runs_of_solid_grains",
+    "verdict",
 ]
 
 GRAIN = ["material", "type", "a_eff", "seed"]
@@ -64,6 +60,8 @@ ALIKE = 0.05
 """... and above, also in dense clusters without twisting, or with the limits of LAMMPS in ratd."""
 CLOSED = {"compression": 5e-3, "long steps": 2e-2, "collision": 1e-2, "springs": 3e-2, "paced": 5e-3, "waiting": 2e-2}
 """What a balance of energy may lack of the work, or of the energy of an impact; springs are those of DMT."""
+STEPPED = 0.05
+"""What half the step may change in N_s of collisions, in the mean."""
 SHIFTED = 0.01
 """What nothing should change by more."""
 SIGMAS = 2.0
@@ -87,7 +85,8 @@ def limits():
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
 
-def _verdict(holds):
+def verdict(holds):
+    """What a page says of a criterion that has no error."""
     return "met" if holds else "missed"
 
 
@@ -109,7 +108,7 @@ def of_reference(table):
     return values | {
         "reference.cases": len(table),
         "reference.energy": energy,
-        "reference.verdict": _verdict(near),
+        "reference.verdict": verdict(near),
     }
 
 
@@ -131,8 +130,8 @@ def of_pull_off(table):
     waiting = pairs[pairs["start"] == "waiting"]
     values["pull_off.waiting pairs"] = len(waiting)
     values["pull_off.waiting median"] = waiting["off"].median()
-    values["pull_off.waiting verdict"] = _verdict(holds[waiting.index].all())
-    values["pull_off.not waiting verdict"] = _verdict(holds.drop(waiting.index).all())
+    values["pull_off.waiting verdict"] = verdict(holds[waiting.index].all())
+    values["pull_off.not waiting verdict"] = verdict(holds.drop(waiting.index).all())
     values["pull_off.waiting worst from 20"] = waiting.loc[waiting["radius_1"] >= 20e-9, "off"].abs().max()
     undamped = pairs[pairs["start"] == "undamped"]
     values["pull_off.undamped over force"] = (undamped["omega"] / undamped["omega_force"]).median()
@@ -155,10 +154,10 @@ def of_forces(table):
         "forces.contacts": len(contacts) // contacts["mode"].nunique(),
         "forces.worst": worst,
         "forces.reaction": contacts["reaction"].max(),
-        "forces.verdict": _verdict(worst < DERIVATIVE),
+        "forces.verdict": verdict(worst < DERIVATIVE),
         "forces.grains": len(momenta.groupby(["material", "type"])),
         "forces.drift": drift,
-        "forces.momenta verdict": _verdict(drift < DRIFT),
+        "forces.momenta verdict": verdict(drift < DRIFT),
     }
 
 
@@ -193,7 +192,7 @@ def of_frames(table):
         "frames.distance": table["distance"].max(),
         "frames.moved": longest.groupby(GRAIN)["moved"].max().min(),
         "frames.exponent": median(exponents(table, "distance")),
-        "frames.verdict": _verdict(table["distance"].max() < APART),
+        "frames.verdict": verdict(table["distance"].max() < APART),
     }
 
 
@@ -206,8 +205,22 @@ def of_energy_step(table):
         "energy_step.grains": len(table.groupby(GRAIN)),
         "energy_step.worst": worst,
         "energy_step.exponent": median(exponents(table, "error", TIMESTEP_FACTOR)),
-        "energy_step.verdict": _verdict(worst < KEPT),
+        "energy_step.verdict": verdict(worst < KEPT),
     }  # fmt: skip
+
+
+def of_collision_step(table):
+    """What half the step changes in the same collisions; errors over the clusters, of which each has several."""
+    by_step = table.set_index([*GRAIN, "velocity", "rotation", "timestep"]).sort_index().unstack("timestep")
+    longest, half = max(table["timestep"]), min(table["timestep"])
+    values = {"collision_step.pairs": len(by_step), "collision_step.clusters": table["seed"].nunique()}
+    for column in ("N_s", "X", "energy_early", "energy_late"):
+        change = by_step[column][half] - by_step[column][longest]
+        values[f"collision_step.{column}"] = Measured(*mean_of(change.groupby(GRAIN).mean().to_numpy()))
+        values[f"collision_step.{column} scatter"] = change.std(ddof=1)
+        values[f"collision_step.{column} mean"] = by_step[column][longest].mean()
+    changed = Measured(1.0 + values["collision_step.N_s"].value, values["collision_step.N_s"].error)
+    return values | {"collision_step.verdict": _decided([changed], STEPPED), "limit.stepped": STEPPED}
 
 
 def balances(table):
@@ -235,7 +248,7 @@ def of_energy(table):
             f"energy.{name} run worst": part["worst"].max(),
             f"energy.{name} dissipated": part["dissipated"].median(),
             f"energy.{name} dissipated most": part["dissipated"].max(),
-            f"energy.{name} verdict": _verdict(gap.max() < CLOSED[name]),
+            f"energy.{name} verdict": verdict(gap.max() < CLOSED[name]),
         }
     return values
 
@@ -263,7 +276,7 @@ def of_box_at_rest(table):
     """Motion in a box at rest over what there can be, see `ratd.experiments.compression.beside_lammps.of_box`."""
     found = {name.replace("box.", "box_at_rest."): value for name, value in of_box(table).items()}
     held = max(found["box_at_rest.ratd most"], found["box_at_rest.LAMMPS most"]) < 1.0
-    return found | {"box_at_rest.verdict": _verdict(held)}
+    return found | {"box_at_rest.verdict": verdict(held)}
 
 
 def of_balance(table):
@@ -272,7 +285,7 @@ def of_balance(table):
     for name, part in table.groupby("experiment"):
         values[f"balance.{name} runs"] = int(part["runs"].sum())
         values[f"balance.{name} worst"] = part["worst"].max()
-        values[f"balance.{name} verdict"] = _verdict(part["worst"].max() < CLOSED[name])
+        values[f"balance.{name} verdict"] = verdict(part["worst"].max() < CLOSED[name])
     return values
 
 
@@ -288,93 +301,7 @@ def of_relaxation(table):
         "relaxation.made": int(table["n_contacts_made"].sum()),
         "relaxation.moved": moved.median(),
         "relaxation.most": moved.max(),
-        "relaxation.verdict": _verdict(whole and moved.max() < SHIFTED),
-    }
-
-
-def grown(table, reference):
-    """Aggregates of equal monomers beside those of the reference, a row a type and number.
-
-    Parameters
-    ----------
-    table, reference : pandas.DataFrame
-        Of the check ``growth``; of `tests/reference/growth.py`.
-
-    Returns
-    -------
-    list of dict
-        type, n_monomers, porosity and its standard error, that of the reference, and their difference over both errors.
-    """
-    own = table[(table["study"] == "aggregates") & table["migration"].isin([NOT, "nearest"])]
-    rows = []
-    for other in reference.itertuples():
-        part = own.loc[(own["type"] == other.type) & (own["n_monomers"] == other.n_monomers), "porosity"]
-        error = part.std() / np.sqrt(len(part))
-        rows.append(
-            dict(
-                type=other.type, n_monomers=other.n_monomers, aggregates=len(part), porosity=part.mean(), error=error,
-                reference=other.porosity, reference_error=other.error,
-                sigmas=(part.mean() - other.porosity) / np.hypot(error, other.error),
-            )
-        )  # fmt: skip
-    return rows
-
-
-def arrival_values(table):
-    """Of single arrivals: name -> values, which should be uniform between 0 and 1."""
-    own = table[table["study"] == "arrivals"]
-    values = {"squared impact parameter": own["impact"]}
-    for name in ("direction", "place"):
-        x, y, z = (own[f"{name}_{axis}"] for axis in "xyz")
-        values |= {f"{name}, z": 0.5 + 0.5 * z, f"{name}, azimuth": 0.5 + np.arctan2(y, x) / (2.0 * np.pi)}
-    return values
-
-
-def migrations(table):
-    """Grains with the radii of the ensemble under both ways to migrate, a row a type, size and way.
-
-    Returns
-    -------
-    list of dict
-        The enclosing radius [nm], its median and where 95 % of the grains lie, and the mean porosity with its error.
-    """
-    own = table[(table["study"] == "grains") & (table["type"] != "BA")]
-    size = (own["a_eff"] * 1e9).round().astype(int)
-    rows = []
-    for (kind, a_eff, way), part in own.groupby([own["type"], size, own["migration"]]):
-        low, middle, high = part["enclosing_radius"].quantile([0.025, 0.5, 0.975]) * 1e9
-        porosity = part["porosity"]
-        rows.append(
-            dict(
-                type=kind, a_eff_nm=a_eff, migration=way, grains=len(part), a_out_nm=middle, a_out_low_nm=low,
-                a_out_high_nm=high, porosity=porosity.mean(), error=porosity.std() / np.sqrt(len(part)),
-            )
-        )  # fmt: skip
-    return rows
-
-
-def of_growth(table, reference):
-    """Aggregates as grown, and the directions of arrivals."""
-    rows = grown(table, reference)
-    sigmas = np.array([row["sigmas"] for row in rows])
-    alike = float(chi2.sf(np.sum(sigmas**2), len(sigmas)))
-    chances = [kstest(values, "uniform").pvalue for values in arrival_values(table).values()]
-    found = {(row["type"], row["a_eff_nm"], row["migration"]): row["porosity"] for row in migrations(table)}
-    more = [found[kind, size, "nearest"] - found[kind, size, "random"] for kind, size, way in found if way == "nearest"]
-    return {
-        "growth.aggregates": sum(row["aggregates"] for row in rows),
-        "growth.cases": len(rows),
-        "growth.worst": np.abs(sigmas).max(),
-        "growth.apart": max(abs(row["porosity"] - row["reference"]) for row in rows),
-        "growth.lower": float(np.mean([row["reference"] - row["porosity"] for row in rows])),
-        "growth.alike": alike,
-        "growth.verdict": _verdict(alike > CHANCE),
-        "growth.arrivals": int((table["study"] == "arrivals").sum()),
-        "growth.chance": min(chances),
-        "growth.tests": len(chances),
-        "growth.arrivals verdict": _verdict(min(chances) > CHANCE),
-        "growth.nearest least": min(more),
-        "growth.nearest most": max(more),
+        "relaxation.verdict": verdict(whole and moved.max() < SHIFTED),
     }
 
 
@@ -386,7 +313,7 @@ def of_theory(table):
         "theory.greatest": over.max(),
         "theory.excess": over.max() - 1.0,
         "theory.above as grown": int((table["omega_first_loss"] > table["firm_bound"]).sum()),
-        "theory.verdict": _verdict((over <= 1.0 + SHIFTED).all()),
+        "theory.verdict": verdict((over <= 1.0 + SHIFTED).all()),
     }
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
@@ -427,7 +354,7 @@ def of_damping(table):
     waiting = table[table["study"] == WAITING]
     marks = ("omega_first_loss", "omega_mass_75", "omega_disr")
     worst = max(abs(median_of(ratios(waiting, mark, (9, 1), [])["ratio"])["median"] - 1.0) for mark in marks)
-    values = {"damping.waiting worst": worst, "damping.verdict": _verdict(worst < SHIFTED)}
+    values = {"damping.waiting worst": worst, "damping.verdict": verdict(worst < SHIFTED)}
     values["damping.printed"] = VISCOUS_EFFECT[1]
     values["damping.grains"] = len(waiting.groupby(GRAIN))
     dense = table[table["type"] == "BAM2"]
@@ -483,7 +410,7 @@ def of_literal(table):
         "literal.solid": median(over, group=grain),
         "literal.nine of ten": most,
         "literal.all": (over - 1.0).abs().max(),
-        "literal.verdict": _verdict(most < SOLID),
+        "literal.verdict": verdict(most < SOLID),
         "literal.higher": median(higher, group=grain),
         "literal.highest": higher.max(),
     }

@@ -83,6 +83,7 @@ class Checks:
             "relaxation": self._relaxation,
             "energy": self._energy,
             "energy_step": self._free_grain,
+            "collision_step": self._collision_step,
             "frames": self._free_grain,
             "forces": self._forces,
             "compression": self._of_cluster,
@@ -190,6 +191,21 @@ class Checks:
         return {
             f"{kind}_{seed}": shared | {"type": kind, "a_eff": own["size_nm"] * NM, "seed": seed}
             for kind, seed in product(own["types"], range(own["seeds"]))
+        }
+
+    def _collision_step(self, own):
+        shared = {key: own[key] for key in ("number", "filling_factor", "second_contact")}
+        shared |= {
+            "largest": own["largest_nm"] * NM,
+            "timestep": [step * 1e-12 for step in own["timestep_ps"]],
+            "duration": own["duration_us"] * 1e-6,
+            "early": own["early_us"] * 1e-6,
+        }
+        each = product(range(own["rotations"]), own["velocities"], range(own["samples"]))
+        return {
+            f"{sample}_{velocity}_{rotation}": shared
+            | {"sample": sample, "velocity": float(velocity), "rotation": rotation}
+            for rotation, velocity, sample in each
         }
 
     def _forces(self, own):

@@ -22,7 +22,13 @@ from ratd.experiments.collision.document import (
     _same_collisions,
     values,
 )
-from ratd.experiments.collision.document_samples import by_sample, halved, largest, with_and_without
+from ratd.experiments.collision.document_samples import (
+    by_sample,
+    chance_of_change,
+    halved,
+    largest,
+    with_and_without,
+)
 from ratd.experiments.collision.document_texts import with_error
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
@@ -220,12 +226,16 @@ def test_half_the_step_is_told_by_the_same_collisions():
     ]
     found = halved(pd.DataFrame(rows))
     assert found["halved n mrn100"] == "4" and float(found["halved X mrn100"].split(" ± ")[0]) == pytest.approx(-0.1)
-    assert float(found["halved N_s mrn100"].split(" ± ")[0]) == 0.0
+    assert float(found["halved N_s mrn100"].split(" ± ")[0]) == 0.0 and found["halved chance mrn100"] == "1"
+    # means of two samples that are two errors from 0; with one degree of freedom t is a tangent
+    pairs = pd.DataFrame({"sample": [1, 1, 2], "change": [0.0, 0.2, 0.3]})
+    assert chance_of_change(pairs) == pytest.approx(1.0 - 2.0 / np.pi * np.arctan(2.0))
 
 
 def test_a_sample_is_told_with_its_own_moments(tables):
     """Its radii are those that its collisions were made with, as the share of its largest sphere says."""
-    found = by_sample(tables.table, "velocity", "mrn")
+    # as the table comes from its file
+    found = by_sample(tables.table.assign(sample=tables.table["sample"].astype(float)), "velocity", "mrn")
     for sample, part in tables.table[tables.table["cluster"] == "mrn"].groupby("sample"):
         assert found[f"sample {sample} share"] == f"{part['largest_share'].iloc[0]:.2f}"
     assert float(found["sample 1 L_4.6"]) < float(found["sample 1 L_5"])

@@ -1,6 +1,7 @@
 """Slots of docs/collision.md that set samples or single collisions beside each other, and what samples are."""
 
 import numpy as np
+from scipy.stats import t as student
 
 from ratd.aggregates.mrn import free_samples, mrn, sample_length, sample_moment
 from ratd.base.statistics import mean_of
@@ -11,6 +12,7 @@ from ratd.experiments.collision.likeness import is_equal, likeness_table
 
 __all__ = [
     "by_sample",
+    "chance_of_change",
     "change_by_half",
     "halved",
     "largest",
@@ -69,7 +71,8 @@ def halved(table):
     """What half the step changes in the same collisions: mean, and its error over samples, else over pairs.
 
     ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs; ``halved scatter CLUSTER``:
-    standard deviation of the change of N_s between them.
+    standard deviation of the change of N_s between them; ``halved chance CLUSTER``: in one case of how many chance
+    alone makes so great a mean change of N_s, see `chance_of_change`.
     """
     found = {}
     for cluster in table.loc[table["law"] == "half_step", "cluster"].unique():
@@ -78,7 +81,20 @@ def halved(table):
             found[f"halved {column} {cluster}"] = with_error(*mean_and_error(pairs, "change"))
         found[f"halved n {cluster}"] = str(len(pairs))
         found[f"halved scatter {cluster}"] = f"{pairs['change'].std(ddof=1):.2f}"
+        found[f"halved chance {cluster}"] = f"{1.0 / chance_of_change(pairs):.0f}"
     return found
+
+
+def chance_of_change(pairs):
+    """Probability of a mean ``change`` as far from 0 if half the step changes nothing (Student's t, both sides).
+
+    Over samples where there are several, as the error of `fragmentation.mean_and_error`, else over pairs.
+    """
+    samples = pairs["sample"].nunique()
+    mean, error = mean_and_error(pairs, "change")
+    if mean == 0.0:
+        return 1.0
+    return float(2.0 * student.sf(abs(mean) / error, (samples if samples > 1 else len(pairs)) - 1))
 
 
 def change_by_half(table, column, cluster):
@@ -116,7 +132,7 @@ def by_sample(table, law, cluster):
     own = table[(table["law"] == law) & ((table["cluster"] == cluster) | is_equal(table))]
     one = own["cluster"] == cluster
     found = {}
-    for sample in sorted(own.loc[one, "sample"].unique()):
+    for sample in sorted(own.loc[one, "sample"].astype(int).unique()):
         # the least bootstrap: its errors are not told
         alike = likeness_table(own[~one | (own["sample"] == sample)], samples=2)
         alike = alike[alike["cluster"] == cluster]
