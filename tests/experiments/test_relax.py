@@ -1,5 +1,7 @@
 """Aggregates come to rest whole, also those of other programs, whose spheres only touch."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -40,17 +42,17 @@ def test_spheres_that_only_touch_come_to_rest_in_one_piece(seed, width, material
 
 def test_equal_spheres_that_touch_are_pressed_to_their_rest():
     grain = touching(3)
-    np.testing.assert_allclose(gaps_of(seated(grain), grain), -1.0, atol=1e-6)
-    np.testing.assert_allclose(gaps_of(pressed(grain, 0.25), grain), -0.25, atol=1e-6)
+    np.testing.assert_allclose(gaps_of(seated(grain).position, grain), -1.0, atol=1e-6)
+    np.testing.assert_allclose(gaps_of(pressed(grain, 0.25).position, grain), -0.25, atol=1e-6)
     unequal = touching(3, width=0.4)
-    assert gaps_of(pressed(unequal, 0.25), unequal).max() == pytest.approx(-0.25, abs=1e-3)
-    assert np.median(gaps_of(seated(unequal), unequal)) == pytest.approx(-1.0, abs=1e-3)
+    assert gaps_of(pressed(unequal, 0.25).position, unequal).max() == pytest.approx(-0.25, abs=1e-3)
+    assert np.median(gaps_of(seated(unequal).position, unequal)) == pytest.approx(-1.0, abs=1e-3)
 
 
 @pytest.mark.parametrize("kind", ["BA", "BAM2"])
 def test_what_was_grown_is_left_as_it_is(kind):
     grain = ratd.grow(kind, 150e-9, "q-S", 0)
-    assert seated(grain) is grain.position
+    assert seated(grain) is grain
 
 
 def test_a_spin_up_and_a_compression_begin_with_all_spheres():
@@ -62,7 +64,17 @@ def test_a_spin_up_and_a_compression_begin_with_all_spheres():
 
 
 def test_an_aggregate_that_comes_apart_is_refused(monkeypatch):
-    monkeypatch.setattr(relaxation, "seated", lambda grain: 1.05 * grain.position)
-    monkeypatch.setattr(relaxation, "pressed", lambda grain, by: 1.05 * grain.position)
+    wider = SimpleNamespace(**vars(touching(0)))
+    wider.position = 1.05 * wider.position
+    monkeypatch.setattr(relaxation, "seated", lambda grain: wider)
+    monkeypatch.setattr(relaxation, "pressed", lambda grain, by: wider)
     with pytest.raises(InputError, match="the aggregate comes apart: 1 of its 60 spheres are left"):
         relax(touching(0))
+
+
+def test_spheres_that_come_to_touch_as_others_are_pressed_are_in_contact():
+    radius, delta_0 = 20e-9, 2e-11
+    apart = 2 * radius + 0.3 * delta_0
+    top = np.sqrt((2 * radius) ** 2 - (apart / 2) ** 2)
+    three = Grain([[0.0, 0.0, 0.0], [apart, 0.0, 0.0], [apart / 2, top, 0.0]], [radius] * 3, "q-S")
+    assert three.n_contacts in (2, 3) and seated(three).n_contacts == relax(three).counter[CONTACTS] == 3

@@ -58,54 +58,6 @@ def gaps(position, radius, pairs, surface_energy, reduced_modulus):
     return gap
 
 
-def pressed(grain, by):
-    """Positions nearer to each other, all by one factor, so that each contact is pressed by a part of its rest or more.
-
-    Parameters
-    ----------
-    grain : Grain
-    by : float
-        Part of the equilibrium compression.
-
-    Returns
-    -------
-    (n, 3) float64 array
-        [m]
-    """
-    return (1.0 - max(0.0, np.max(_nearer(grain, by), initial=0.0))) * grain.position
-
-
-def seated(grain):
-    """Positions in which most contacts are at rest, also where the spheres of the aggregate only touch.
-
-    Spheres that only touch, as programs of others write them, are pulled together by adhesion all at once, and what
-    that sets free may part them.
-
-    Parameters
-    ----------
-    grain : Grain
-
-    Returns
-    -------
-    (n, 3) float64 array
-        [m]; those of the aggregate, or all nearer to each other by one factor, so that half of the contacts are
-        pressed to their rest, where more than half of them are pressed by less than `SEATED` of it.
-    """
-    nearer = _nearer(grain, 1.0)
-    if np.median(_nearer(grain, SEATED)) <= 0.0:
-        return grain.position
-    return (1.0 - np.median(nearer)) * grain.position
-
-
-def _nearer(grain, by):
-    """Part of its distance by which each contact must shorten to be pressed by a part of its rest."""
-    i, j = grain.contacts.T
-    constants = grain.material.surface_energy, grain.material.reduced_modulus
-    delta_0 = equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
-    gap = gaps(grain.position, grain.radius, grain.contacts, *constants)
-    return (gap + by) * delta_0 / (grain.radius[i] + grain.radius[j] + gap * delta_0)
-
-
 class Grain:
     """An aggregate of spherical monomers at rest.
 
@@ -287,3 +239,55 @@ def _nearest_of_two_pieces(position, radius, material, label):
         f" Monomers {i} and {j}, counted from 0, are the nearest of different pieces: the gap between them is "
         f"{distance[nearest]:.3g} m and would have to be less than {allowed:.3g} m."
     )
+
+
+def pressed(grain, by):
+    """The aggregate, smaller by one factor, so that each contact is pressed by a part of its rest or more.
+
+    Parameters
+    ----------
+    grain : Grain
+    by : float
+        Part of the equilibrium compression.
+
+    Returns
+    -------
+    Grain
+    """
+    return _smaller(grain, max(0.0, np.max(_nearer(grain, by), initial=0.0)))
+
+
+def seated(grain):
+    """The aggregate with most of its contacts at rest, also where its spheres only touch.
+
+    Spheres that only touch, as programs of others write them, are pulled together by adhesion all at once, and what
+    that sets free may part them.
+
+    Parameters
+    ----------
+    grain : Grain
+
+    Returns
+    -------
+    Grain
+        The same one; where more than half of the contacts are pressed by less than `SEATED` of their rest, one that is
+        smaller by one factor, so that half of them are pressed to it. Spheres that are near may touch then, too.
+    """
+    if np.median(_nearer(grain, SEATED)) <= 0.0:
+        return grain
+    return _smaller(grain, np.median(_nearer(grain, 1.0)))
+
+
+def _nearer(grain, by):
+    """Part of its distance by which each contact must shorten to be pressed by a part of its rest."""
+    i, j = grain.contacts.T
+    constants = grain.material.surface_energy, grain.material.reduced_modulus
+    delta_0 = equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
+    gap = gaps(grain.position, grain.radius, grain.contacts, *constants)
+    return (gap + by) * delta_0 / (grain.radius[i] + grain.radius[j] + gap * delta_0)
+
+
+def _smaller(grain, part):
+    """The aggregate with all positions nearer to each other by a part."""
+    about = {"type": grain.type, "a_eff": grain.a_eff, "seed": grain.seed}
+    return Grain((1.0 - part) * grain.position, grain.radius, grain.material, **about)

@@ -1,5 +1,7 @@
 """An aggregate brought to rest: contacts of the growth carry the forces that their compression gives."""
 
+from functools import partial
+
 import numpy as np
 
 from ratd.aggregates.grain import pressed, seated
@@ -71,8 +73,9 @@ def relax(grain, *, law=None, timestep_factor=0.125):
     """
     law = jkr() if law is None else law
     box, integrator = open_space(), leapfrog(timestep_factor=timestep_factor)
-    for position in (seated(grain), pressed(grain, PRESSED)):
-        state = new_state(position, grain.radius, grain.material, grain.contacts, law, box, integrator)
+    for start in (seated, partial(pressed, by=PRESSED)):
+        own = start(grain)
+        state = new_state(own.position, own.radius, own.material, own.contacts, law, box, integrator)
         state = find_rest(state, law, free(), box, integrator)
         label_fragments(state)
         whole = state.counter[LARGEST_MONOMERS]

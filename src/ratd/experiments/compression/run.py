@@ -80,10 +80,7 @@ class Cluster:
             )
         if material is not None:
             cluster = _of(cluster, get_material(material))
-        position = seated(cluster)
-        if position is not cluster.position:
-            cluster = Grain(position, cluster.radius, cluster.material, seed=cluster.seed)
-        self.grain = cluster
+        self.grain = cluster = seated(cluster)
         self.radius = float(np.mean(cluster.radius**3)) ** (1.0 / 3.0)
         self.time_unit = time_unit(cluster.material, self.radius)
         own = cluster.material.surface_energy, cluster.material.critical_rolling_displacement
