@@ -304,7 +304,7 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         done = run("show", tmp_path / f"{name}.nc")
         assert done.exit_code == 0 and said in done.stdout, done.output
         assert (tmp_path / f"{name}.png").read_bytes()[1:4] == b"PNG"
-        assert [each.sizes for each in ratd.read_runs(tmp_path / f"{name}.nc")] != []
+        assert len(ratd.read_runs(tmp_path / f"{name}.nc")) == 1
     xr.load_dataset(tmp_path / "compress.nc")[["phi", "pressure", "snapshot_phi"]].to_netcdf(tmp_path / "part.nc")
     done = run("show", tmp_path / "part.nc")
     assert done.exit_code == 1 and "part.nc: is not the whole of a run, as ratd" in done.stderr
@@ -346,9 +346,8 @@ def test_what_is_wrong_is_said_in_one_sentence(chain, arguments, said):
     chain.with_name("bare.txt").write_text("0 0 0 20\n0 0 40 20\n")
     chain.with_name("micron.txt").write_text("0 0 0 0.1\n0 0 0.2 0.1\n")
     chain.with_name("empty.txt").write_text("")
-    names = {name: str(chain.with_name(f"{name}.txt")) for name in ("apart", "bare", "micron", "empty")} | {
-        "chain": str(chain)
-    }
+    written = ("apart", "bare", "micron", "empty")
+    names = {"chain": str(chain)} | {name: str(chain.with_name(f"{name}.txt")) for name in written}
     done = run(*[argument.format(**names) for argument in arguments])
     assert done.exit_code != 0 and said in done.output and "Traceback" not in done.output
 

@@ -64,8 +64,9 @@ def read_runs(path):
     Returns
     -------
     list of xarray.Dataset
-        As `ratd.spin_up`, `ratd.compress`, `ratd.stretch` or `ratd.collide` returned them; those of compressions and
-        pulls without the state at their end, so that they cannot be pulled on.
+        As `ratd.spin_up`, `ratd.compress`, `ratd.stretch` or `ratd.collide` returned them. From files of ratd those of
+        compressions and pulls are without the state at their end, so that they cannot be pulled on, and collisions have
+        what their tables need, N_s and X among it.
 
     Raises
     ------

@@ -6,6 +6,7 @@ python -m ratd.validation.document redraw             figures, tables and text, 
 
 import json
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -157,13 +158,14 @@ def read_data(folder="."):
 
 def values(tables):
     """Values of the slots, from what `read_data` gives: name of a slot -> number or text."""
+    elsewhere = {
+        "lammps": lammps_findings.of_lammps,
+        "growth": partial(growth_findings.of_growth, reference=tables["growth_reference"]),
+    }
     found = {}
     for check in (*CHECKS, "reference", "balance"):
-        if check == "growth":
-            found |= growth_findings.of_growth(tables[check], tables["growth_reference"])
-        else:
-            of = lammps_findings.of_lammps if check == "lammps" else getattr(findings, f"of_{check}")
-            found |= of(tables[check])
+        of = elsewhere[check] if check in elsewhere else getattr(findings, f"of_{check}")
+        found |= of(tables[check])
     found |= lammps_spin_up.findings(tables["lammps_spin_up"])
     found |= lammps_single.findings(tables["lammps_single"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])

@@ -80,7 +80,7 @@ def limits():
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
         "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE, "large tree": LARGE_TREE,
-        "reference velocity": FASTER, "reference spin": SPUN,
+        "reference velocity": FASTER, "reference spin": SPUN, "stepped": STEPPED,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
 
@@ -90,13 +90,13 @@ def verdict(holds):
     return "met" if holds else "missed"
 
 
-def _decided(ratios, part):
-    """Verdict on ratios that should be 1 within a part: open where one is within `SIGMAS` errors of the edge."""
-    off = [abs(ratio.value - 1.0) for ratio in ratios]
-    errors = [SIGMAS * ratio.error for ratio in ratios]
-    if any(each - error > part for each, error in zip(off, errors, strict=True)):
+def _decided(found, within, near=1.0):
+    """Verdict on numbers that should be within so much of another: open where one is `SIGMAS` errors from the edge."""
+    off = [abs(each.value - near) for each in found]
+    errors = [SIGMAS * each.error for each in found]
+    if any(each - error > within for each, error in zip(off, errors, strict=True)):
         return "missed"
-    return "met" if all(each + error < part for each, error in zip(off, errors, strict=True)) else "open"
+    return "met" if all(each + error < within for each, error in zip(off, errors, strict=True)) else "open"
 
 
 def of_reference(table):
@@ -219,8 +219,7 @@ def of_collision_step(table):
         values[f"collision_step.{column}"] = Measured(*mean_of(change.groupby(GRAIN).mean().to_numpy()))
         values[f"collision_step.{column} scatter"] = change.std(ddof=1)
         values[f"collision_step.{column} mean"] = by_step[column][longest].mean()
-    changed = Measured(1.0 + values["collision_step.N_s"].value, values["collision_step.N_s"].error)
-    return values | {"collision_step.verdict": _decided([changed], STEPPED), "limit.stepped": STEPPED}
+    return values | {"collision_step.verdict": _decided([values["collision_step.N_s"]], STEPPED, near=0.0)}
 
 
 def balances(table):
