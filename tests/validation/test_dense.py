@@ -107,5 +107,8 @@ def test_ratios_are_those_of_the_pairs_of_codes():
     assert found["dense.n_contacts_limits_0.15"].value == pytest.approx(1.0)
     assert found["dense.twisting"].value == pytest.approx(0.36)
     assert found["dense.twisting_limits"].value == pytest.approx(0.18)
-    assert found["dense.twisting_matters"].value == pytest.approx(4.0)
+    for low in (0.05, 0.1, 0.15):
+        assert found[f"dense.twisting_matters_{low:g}"].value == pytest.approx(4.0)
+        assert found[f"dense.line_{low:g}"].value == pytest.approx(2.0)
+        assert found[f"dense.line_untwisted_{low:g}"].value == pytest.approx(0.5)
     assert found["dense.n"] == 2 and found["dense.N"] == 64

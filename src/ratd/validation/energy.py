@@ -4,6 +4,7 @@ import numpy as np
 
 from ratd.aggregates.growth import grow
 from ratd.experiments.spin_up.run import spin_up
+from ratd.validation.lammps import MARKS
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
 MODES = ("sliding", "rolling", "twisting", "damping", "contact", "drag")
@@ -18,6 +19,7 @@ COLUMNS = {
     "kinetic": ("J", "kinetic energy in the inertial frame"),
     "potential": ("J", "potential energy of the contacts, less that at the start"),
     **{f"dissipated_{mode}": ("J", f"energy dissipated since the start: {mode}") for mode in MODES},
+    "worst_to_quarter": ("1", "greatest gap over the work up to the loss of a quarter of the mass"),
     "worst": ("1", "greatest gap over the work in the whole run, fragments that left included"),
 }
 KIND = table_kind("energy", "Balance of energy", COLUMNS)
@@ -63,13 +65,16 @@ def gaps(run):
     dict
     """
     mass, work = run["mass"].values, run["torque_work"].values
-    whole = np.flatnonzero(mass > mass[0] * (1.0 - 1e-9))[-1]
+    whole = np.flatnonzero(mass > mass[0] * MARKS["first loss"])[-1]
     settled = work > SETTLED * work[-1]
+    gap = np.where(settled, np.abs(run["energy_residual"].values) / np.where(settled, work, np.nan), 0.0)
+    quarter = np.flatnonzero(mass >= MARKS["25 % of the mass"] * mass[0])[-1] + 1
     return {
         "omega": run["omega"].values[whole],
         "work": work[whole],
         "kinetic": run["kinetic_energy"].values[whole] - run["kinetic_energy"].values[0],
         "potential": run["potential_energy"].values[whole] - run["potential_energy"].values[0],
         **{f"dissipated_{m}": np.diff(run[f"dissipated_{m}"].values[[0, whole]])[0] for m in MODES},
-        "worst": np.abs(run["energy_residual"].values[settled] / work[settled]).max(),
+        "worst_to_quarter": gap[: quarter + 1].max(),
+        "worst": gap.max(),
     }

@@ -223,13 +223,14 @@ def of_collision_step(table):
 
 
 def balances(table):
-    """What the balance of energy of spin-ups lacks: before the first loss of mass, and at worst in the whole run."""
+    """What the balance of energy lacks: up to the first loss of mass, at worst up to a quarter and in the whole run."""
     dissipated = table.filter(like="dissipated_").sum(axis=1)
     gap = table["work"] - table["kinetic"] - table["potential"] - dissipated
     return table[[*GRAIN, "epsilon", "omega", "work"]].assign(
         kinetic=table["kinetic"] / table["work"],
         dissipated=dissipated / table["work"],
         gap=gap / table["work"],
+        worst_to_quarter=table["worst_to_quarter"],
         worst=table["worst"],
     )
 
@@ -243,6 +244,9 @@ def of_energy(table):
             f"energy.{name} grains": len(part),
             f"energy.{name} median": gap.median(),
             f"energy.{name} worst": gap.max(),
+            f"energy.{name} quarter median": part["worst_to_quarter"].median(),
+            f"energy.{name} quarter worst": part["worst_to_quarter"].max(),
+            f"energy.{name} quarter verdict": verdict(part["worst_to_quarter"].max() < CLOSED[name]),
             f"energy.{name} run median": part["worst"].median(),
             f"energy.{name} run worst": part["worst"].max(),
             f"energy.{name} dissipated": part["dissipated"].median(),

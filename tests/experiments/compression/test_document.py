@@ -11,9 +11,9 @@ import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import findings
+from ratd.experiments.compression.findings import _below, findings
 from ratd.experiments.compression.tables import joined
-from ratd.experiments.compression.tension_findings import of_tension
+from ratd.experiments.compression.tension_findings import of_spun, of_tension
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
 
@@ -43,7 +43,7 @@ def test_every_figure_of_the_document_is_there():
 
 def test_a_sentence_that_no_longer_holds_is_an_error(values):
     verdicts = [name for name in slots(TEMPLATE) if isinstance(values.get(name), str)]
-    assert {"exponent", "line_0.1", "silicate_300", "leader_0.48"} <= set(verdicts)
+    assert {"exponent", "line_0.3", "slow_line", "silicate_300", "leader_0.48"} <= set(verdicts)
     for name in verdicts:
         with pytest.raises(ratd.InputError, match=f"the verdict {name} is 'other'"):
             fill(TEMPLATE, values | {name: "other"})
@@ -67,7 +67,7 @@ def test_a_number_that_changes_flips_the_verdict_on_it(values):
     assert values["loose_line"] == "below"
     loose["loose_16384"] = sets["loose_16384"].assign(pressure=4.0 * sets["loose_16384"]["pressure"])
     found = findings(loose, None, None)
-    assert found["slow_enough"] == "another" and found["loose_line"] == "not below"
+    assert found["slow_enough"] == "another" and found["loose_line"] == "on"
     small = sets["n_1024"].assign(pressure=sets["n_1024"]["pressure"] / sets["n_1024"]["phi"])
     assert findings({"base": sets["base"], "n_16384": small}, None, None)["exponent"] == "differs"
 
@@ -155,21 +155,21 @@ def pulls(strength, seeds=(0, 1), *, phi=0.1, n_axes=1, rate=3e-6, n=1024, unloa
 
 
 def test_pulls_of_other_sorts_are_told_apart():
-    entries = [pulls([10.0, 20.0]), pulls([20.0, 60.0], phi=0.2), pulls([1.0, 3.0], n_axes=3)]
-    entries += [pulls([11.0, 22.0], rate=1e-6), pulls([30.0, 30.0], n=4096), pulls([9.0, 18.0], unloaded=1)]
+    entries = [pulls([1e4, 2e4]), pulls([2e4, 6e4], phi=0.2), pulls([1e3, 3e3], n_axes=3)]
+    entries += [pulls([1.1e4, 2.2e4], rate=1e-6), pulls([3e4, 3e4], n=4096), pulls([9e3, 1.8e4], unloaded=1)]
     found = of_tension(xr.concat(entries, "entry"))
     unit = 0.6 * 0.1 / 1e-7 * 0.1**1.8
     assert found["tension_x.rate"] == 3e-6 and found["tension_x.N"] == 1024
-    assert found["tension_x.0.1"].value == pytest.approx(15.0 / unit)
-    assert found["tension_xyz.0.1"].value == pytest.approx(2.0 / unit)
-    assert found["tension_x.residual_0.1"].value == pytest.approx(0.1 / 15.0)
+    assert found["tension_x.0.1"].value == pytest.approx(1.5e4 / unit)
+    assert found["tension_xyz.0.1"].value == pytest.approx(2e3 / unit)
+    assert found["tension_x.residual_0.1"].value == pytest.approx(0.1 / 1.5e4)
     assert found["tension_x.peak_0.2"].value == pytest.approx(0.5)
     assert found["tension_x.exponent"].value == pytest.approx(np.log(np.sqrt(1200 / 200)) / np.log(2))
     # of the same clusters: each by the same part
     assert found["tension_rate_1e-06.over_0.1"] == pytest.approx((1.1, 0.0))
     assert found["tension_unloaded.over_0.1"] == pytest.approx((0.9, 0.0))
     assert found["tension_ways"] == "by more"
-    # of others: 15 +- 5 beneath 30 +- 0
+    # of others: 15 +- 5 kPa beneath 30 +- 0
     assert found["tension_N_4096.over_0.1"] == pytest.approx((2.0, 2.0 / 3.0))
     assert not any(name.endswith("over_0.2") for name in found)
 
@@ -189,15 +189,36 @@ def test_the_formula_of_the_tensile_strength_holds_or_fails():
 
 
 def test_pulls_without_tension_count_in_means_alone():
-    entries = [pulls([0.0, 20.0]), pulls([20.0, 40.0], phi=0.2), pulls([0.0, 0.0], phi=0.4)]
+    entries = [pulls([0.0, 2e4]), pulls([2e4, 4e4], phi=0.2), pulls([0.0, 0.0], phi=0.4)]
     table = xr.concat(entries, "entry")
     table["phi_strength"] = table["phi_strength"].where(table["strength"] > 0.0)
     found = of_tension(table)
-    assert found["tension_x.0.1"].value == pytest.approx(10.0 / (0.6 * 0.1 / 1e-7 * 0.1**1.8))
+    assert found["tension_x.0.1"].value == pytest.approx(1e4 / (0.6 * 0.1 / 1e-7 * 0.1**1.8))
     assert [found[f"tension_x.held_{phi}"] for phi in (0.1, 0.2, 0.4)] == [1, 2, 0]
     assert found["tension_x.peak_0.1"].value == 0.5
     assert np.isnan(found["tension_x.peak_0.4"].value) and np.isnan(found["tension_x.residual_0.4"].value)
     assert found["tension_x.exponent"].value == pytest.approx(np.log2(np.sqrt(20 * 40) / 20))
+
+
+def test_a_cluster_that_bears_next_to_nothing_does_not_hold():
+    unit = 0.6 * 0.1 / 1e-7 * 0.1**1.8
+    found = of_tension(pulls([1.5 * unit, 1e-3 * unit]))
+    assert found["tension_x.held_0.1"] == 1 and found["tension_x.of_held_0.1"].value == pytest.approx(1.5)
+    assert found["tension_x.0.1"].value == pytest.approx(0.7505)
+
+
+def test_the_strength_that_spin_implies_crosses_the_formula_where_its_power_law_does():
+    phi = np.geomspace(0.1, 0.8, 12)
+    formula = 0.6 * phi**1.8
+    over = (phi / 0.4) ** 1.5
+    found = of_spun({"phi": phi, "strength": over * formula, "type": np.full(12, "BA")})
+    assert found["spun.BA power"].value == pytest.approx(1.5) and found["spun.BA phi"] == pytest.approx(0.4)
+    assert found["spun.BA least"] == pytest.approx(over[0]) and found["spun.BA most"] == pytest.approx(over[-1])
+
+
+def test_a_verdict_on_few_clusters_needs_more_than_two_errors():
+    """Student's t: 0.5 with an error of 0.15 is below 1 in five clusters, and may be chance in three."""
+    assert _below(Measured(0.5, 0.15), 5) and not _below(Measured(0.5, 0.15), 3)
 
 
 def test_tables_of_other_sets_are_not_joined():
@@ -234,14 +255,14 @@ def test_two_clusters_have_the_scatter_of_many(values):
     own = values["silicate_16384.ratio_0.1_of_few"]
     assert own.value == values["silicate_16384.ratio_0.1"].value
     wanted = own.value * values["n_16384.scatter_0.1"].value / 2**0.5
-    assert abs(own.error / wanted - 1.0) < 1e-12 and own.error > 5 * values["silicate_16384.ratio_0.1"].error
+    assert abs(own.error / wanted - 1.0) < 1e-12 and own.error > 2 * values["silicate_16384.ratio_0.1"].error
 
 
 def test_a_slow_squeeze_is_said_to_suggest_what_five_clusters_do_not_show(values):
-    """Ten clusters of the usual rate at three quarters of their pressure show it; at more than it they deny it."""
+    """Ten clusters of the usual rate at six tenths of their pressure show it; at more than it they deny it."""
     assert (values["slow_0.01"], values["slow_0.02"]) == ("suggest", "show")
     sets, *_ = document.read_data()
-    for times, word in ((0.75, "show"), (1.05, "deny")):
+    for times, word in ((0.6, "show"), (1.05, "deny")):
         slow = sets["n_16384"].assign(pressure=times * sets["n_16384"]["pressure"])
         chosen = {"base": sets["base"], "n_16384": sets["n_16384"], "slow_16384": slow}
         found = findings(chosen, None, None)

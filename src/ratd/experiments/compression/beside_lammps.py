@@ -84,8 +84,9 @@ def of_dense(table):
     dict
         ``dense.WHAT_PAIR_LOW`` as of `of_lammps`, for the bins between `DENSE_EDGES` and the pairs of `PAIRS`;
         ``dense.twisting`` and ``dense.twisting_limits``, the part of the work that twisting takes in ratd up to the
-        end, with its own limits and with those of LAMMPS; ``dense.twisting_matters``, the mean pressure in the last bin
-        over that without twisting, in ratd; ``dense.n``, ``dense.N`` and ``dense.rate``.
+        end, with its own limits and with those of LAMMPS; ``dense.twisting_matters_LOW``, the mean pressure over that
+        without twisting, in ratd; ``dense.line_LOW`` and ``dense.line_untwisted_LOW``, both over P_0 phi^3;
+        ``dense.n``, ``dense.N`` and ``dense.rate``.
     """
     found = _clusters("dense", table)
     for (low, high), (pair, codes) in itertools.product(itertools.pairwise(DENSE_EDGES), PAIRS.items()):
@@ -94,8 +95,14 @@ def of_dense(table):
     last = table[table["phi"] == table.groupby("seed")["phi"].transform("max")]
     for name, code in (("twisting", "ratd"), ("twisting_limits", "ratd with the limits of LAMMPS")):
         found[f"dense.{name}"] = Measured(*mean_of(last.loc[last["code"] == code, "twisting"].to_numpy()))
-    low, high = DENSE_EDGES[-2:]
-    found["dense.twisting_matters"] = _over(table, "ratd", "ratd without twisting", low, high)["pressure"]
+    for low, high in itertools.pairwise(DENSE_EDGES):
+        over = _over(table, "ratd", "ratd without twisting", low, high)
+        found[f"dense.twisting_matters_{low:g}"] = over["pressure"]
+        part = table[(table["phi"] > low) & (table["phi"] < high)]
+        for word, code in (("line", "ratd"), ("line_untwisted", "ratd without twisting")):
+            own = part[part["code"] == code]
+            means = (own["pressure"] / own["line"]).groupby(own["seed"]).mean()
+            found[f"dense.{word}_{low:g}"] = Measured(*mean_of(means.to_numpy()))
     return found
 
 

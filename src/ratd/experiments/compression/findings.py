@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy.stats import t as student
 
 from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.aggregates.strength import (
@@ -16,6 +17,7 @@ from ratd.base.materials import get_material
 from ratd.base.measured import Measured, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
+from ratd.experiments.compression.losses import lost_from, overtakes, part_of_work, share_at
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SMALL, beside, of_pairs
 from ratd.experiments.compression.static import (
@@ -34,19 +36,19 @@ from ratd.experiments.compression.strength import (
     far_slope_of_structure,
     fit_power_law,
     fit_with_limit,
-    lost_from,
+    led_by,
     measured,
     of_means,
-    overtakes,
+    of_same_clusters,
     phi_at,
     ratio_at,
     scatter_at,
     several,
-    share_at,
     slope_of_structure,
 )
 from ratd.experiments.compression.tables import nearest_phi
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
+from ratd.observables.energy import DISSIPATED
 
 __all__ = ["findings"]
 
@@ -60,6 +62,12 @@ STEPS_AT = (0.01, 0.02)
 """Filling factors below the range of the fit at which long steps are compared with explicit ones."""
 WAYS = ("rolling", "twisting", "sliding", "damping", "made")
 """Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
+ROLLING_BETWEEN = ((0.005, 0.008), (0.008, 0.01), (0.01, 0.012), (0.012, 0.015), (0.02, 0.03))
+"""Filling factors between which the part of the work that rolling takes is told."""
+BALANCE_AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.1, 0.3)
+"""Filling factors at which the balance of energy is told."""
+LED = (("xi_32", 1), ("explicit", 3))
+"""Sets whose pressure at 0.01 few clusters bear, and how many."""
 PAPER_N = 16384
 """Monomers in the clusters of most sets of the paper."""
 
@@ -92,8 +100,7 @@ def of_set(name, table):
         found[f"pressure_{phi:g}"] = found[f"ratio_{phi:g}"].value * found["P0"] * phi**3
         found[f"scatter_{phi:g}"] = measured(scatter_at(table, phi))
         k = _bin_at(table, phi)
-        contacts = table["n_contacts"].values[:, k] / found["N"]
-        found[f"contacts_{phi:g}"] = Measured(*mean_of(contacts[np.isfinite(contacts)]))
+        found[f"contacts_{phi:g}"] = _contacts_at(table, phi)
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
         found[f"anisotropy_{phi:g}"] = measured(anisotropy_at(table, phi))
         found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), several(along_axes(table, phi)), strict=True))
@@ -114,10 +121,10 @@ def of_set(name, table):
     found["sliding_from"] = measured(lost_from(table, "sliding", SLIDING))
     for first, second in (("sliding", "rolling"), ("twisting", "rolling"), ("sliding", "twisting")):
         found[f"{first}_over_{second}"] = measured(overtakes(table, first, second))
-    part = table["energy_residual"].values / table["work"].values
-    for phi in [phi for phi in (0.01, 0.02, 0.03, 0.1, 0.3) if phi < last]:
-        found[f"residual_{phi:g}"] = float(np.nanmax(np.abs(part[:, table["phi"].values > phi])))
-        found[f"untold_{phi:g}"] = Measured(*mean_of(-part[:, _bin_at(table, phi)]))
+    found |= _balance(table, last)
+    for low, high in ROLLING_BETWEEN:
+        if found["latest_start"] < low and high < last:
+            found[f"rolling_between_{low:g}"] = measured(part_of_work(table, "rolling", low, high))
     for k, phi in enumerate(table["snapshot_phi"].values):
         nominal = f"{float(f'{phi:.1g}'):g}"
         found[f"slope_{nominal}"] = measured(slope_of_structure(table, k))
@@ -132,9 +139,37 @@ def of_set(name, table):
     return {f"{name}.{key}": value for key, value in found.items()}
 
 
+def _contacts_at(table, phi):
+    """Number of contacts over that of monomers at a filling factor, `Measured`."""
+    every = table["n_contacts"].values / table["n_monomers"].item()
+    x = np.log(table["phi"].values)
+    each = [np.interp(math.log(phi), x[there], own[there]) for own in every if (there := np.isfinite(own)).any()]
+    return Measured(*mean_of(np.array(each)))
+
+
+def _balance(table, last):
+    """What the balance of energy lacks of the work: in any cluster from a filling factor on, and in the mean at it.
+
+    ``lacks`` is the sum over the clusters over the sum of their work, which single clusters hardly have where they are
+    loose, and ``lacks_lost`` the same over all that they lost.
+    """
+    missing, work = table["energy_residual"].values, table["work"].values
+    lost = sum(table[f"dissipated_{way}"].values for way in DISSIPATED)
+    found = {}
+    for phi in [phi for phi in BALANCE_AT if phi < last]:
+        k = _bin_at(table, phi)
+        found[f"residual_{phi:g}"] = float(np.nanmax(np.abs((missing / work)[:, table["phi"].values > phi])))
+        found[f"untold_{phi:g}"] = Measured(*mean_of(-(missing / work)[:, k]))
+        found[f"lacks_{phi:g}"] = float(abs(np.nansum(missing[:, k]) / np.nansum(work[:, k])))
+        found[f"lacks_lost_{phi:g}"] = float(abs(np.nansum(missing[:, k]) / np.nansum(lost[:, k])))
+    return found
+
+
 def _with_limit(table, high):
     """The fit with a greatest filling factor, and what it and the recalled formula give over P_0 phi^3."""
     found = dict(zip(("limit_c", "limit_phi"), several(fit_with_limit(table, high=high)), strict=True))
+    for shorter in (0.3, 0.4):
+        found[f"limit_phi_{shorter:g}"] = several(fit_with_limit(table, high=shorter))[1]
     for phi in AT:
         found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
         fitted = compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value)
@@ -259,6 +294,12 @@ def _near(table, phi):
     return table["pressure"].values[:, k - 2 : k + 3].mean(axis=1)
 
 
+def _again(table, other, phi):
+    """Root mean square of P over that of the same cluster in another run, less 1, near a filling factor."""
+    own, other = (_near(each, phi) for each in of_same_clusters([table, other]))
+    return float(np.sqrt(np.mean((own / other - 1.0) ** 2)))
+
+
 def _bin_at(table, phi):
     """Number of the bin of a filling factor in a table."""
     return nearest_phi(table["phi"].values, phi)
@@ -285,19 +326,20 @@ def verdicts(values, sets):
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
     if "slow_16384.over_0.03" in values:
+        n = values["slow_16384.n"]
         late = values["slow_16384.over_0.03"]
-        early = values["slow_16384.over_0.005"]
-        found["slow_early"] = "less" if early.value + 2.0 * early.error < 1.0 else "as much"
+        early = [values[f"slow_16384.{what}_0.005"] for what in ("over", "ratio")]
+        found["slow_early"] = "less" if all(_below(own, n) for own in early) else "as much"
+        found["slow_line"] = "below" if _below(values["slow_16384.ratio_0.01"], n) else "not below"
         for phi in (0.01, 0.02):
             both = [values[f"slow_16384.{over}_{phi}"] for over in ("over", "over_all")]
-            sure = all(own.value + 2.0 * own.error < 1.0 for own in both)
+            sure = all(_below(own, n) for own in both)
             found[f"slow_{phi}"] = "show" if sure else "suggest" if both[0].value < 1.0 else "deny"
         found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
         steeper = values["slow_16384.steeper_low"]
-        found["slow_steeper"] = "more" if steeper.value > 2.0 * steeper.error else "no more"
+        found["slow_steeper"] = "more" if steeper.value > _sure(steeper, n) else "no more"
     if "slow_16384.over_next_0.01" in values:
-        at = values["loose_16384.ratio_0.01"]
-        found["loose_line"] = "below" if at.value + 2.0 * at.error < 1.0 else "not below"
+        found["loose_line"] = "below" if _below(values["loose_16384.ratio_0.005"], values["loose_16384.n"]) else "on"
         over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
         found["slow_enough"] = "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in over) else "another"
     if "short_16384.over_0.01" in values:
@@ -319,6 +361,16 @@ def verdicts(values, sets):
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
+
+
+def _sure(own, n):
+    """Half the width of the range that holds a mean of `n` clusters in 19 cases of 20 (Student's t)."""
+    return student.ppf(0.975, n - 1) * own.error
+
+
+def _below(own, n):
+    """Whether a ratio of `n` clusters is surely below 1."""
+    return own.value + _sure(own, n) < 1.0
 
 
 def _beside_3(exponent):
@@ -364,9 +416,13 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         values |= of_set(name, table)
     values |= of_pairs(sets)
     values |= worst_balance(sets, values)
-    both = [f"{name}.ratio_0.1" for name in (HIGH, BY_SIZE[-1])]
-    if set(both) <= set(values):
-        values[f"{HIGH}.over_all"] = quotient(*(values[name] for name in both))
+    both = [name for name in (HIGH, BY_SIZE[-1]) if name in sets]
+    if len(both) == 2:
+        values[f"{HIGH}.over_all"] = quotient(*(values[f"{name}.ratio_0.1"] for name in both))
+        values[f"{HIGH}.again"] = _again(*(sets[name] for name in both), 0.1)
+    for name, k in LED:
+        if name in sets:
+            values[f"{name}.led_by_{k}"] = led_by(sets[name], 0.01, k)
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
     if "explicit" in sets:

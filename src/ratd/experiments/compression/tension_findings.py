@@ -10,6 +10,8 @@ from ratd.experiments.compression.strength import measured, of_means
 
 __all__ = ["in_units", "main_pulls", "nominal_phi", "of_spun", "of_tension", "spun_up"]
 
+HELD = 0.01
+"""Strength over that of the formula above which a cluster is said to hold to its copies; less is inertia."""
 TENSION_FROM = 0.05
 """Filling factor from which on the power law of the tensile strength is fitted; looser clusters scatter too much."""
 
@@ -67,7 +69,7 @@ def of_tension(entries):
     for way, own in ways.items():
         for each in np.unique(phi[own]):
             here = own & (phi == each)
-            held = here & (strength > 0.0)
+            held = here & (strength > HELD * formula)
             mean = entries["strength"].values[here].mean()
             pressed = entries["residual"].values[here] / (mean if mean > 0.0 else np.nan)
             found |= {
@@ -75,6 +77,7 @@ def of_tension(entries):
                 f"tension_{way}.peak_{each:g}": Measured(*mean_of(peak[held])),
                 f"tension_{way}.n_{each:g}": int(here.sum()),
                 f"tension_{way}.held_{each:g}": int(held.sum()),
+                f"tension_{way}.of_held_{each:g}": Measured(*mean_of((strength / formula)[held])),
                 f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
             }
             beside = main & (phi == each)
@@ -98,9 +101,24 @@ def of_tension(entries):
 
 
 def of_spun(spun):
-    """Strength that spin implies (of `spun_up`) over the formula of Tatsuuma et al., medians: ``spun.TYPE``."""
+    """Strength that spin implies (of `spun_up`) over the formula of Tatsuuma et al.
+
+    Returns
+    -------
+    dict
+        ``spun.TYPE``, the median; ``spun.TYPE least`` and ``most``; ``spun.TYPE power`` of phi with which it grows, and
+        ``spun.TYPE phi``, the filling factor at which a power law through the cells is 1.
+    """
     over = spun["strength"] / tensile_strength_tatsuuma2019(1.0, 1.0, spun["phi"])
-    return {f"spun.{kind}": median(over[spun["type"] == kind]) for kind in np.unique(spun["type"])}
+    found = {}
+    for kind in np.unique(spun["type"]):
+        own, phi = over[spun["type"] == kind], spun["phi"][spun["type"] == kind]
+        found |= {f"spun.{kind}": median(own), f"spun.{kind} least": own.min(), f"spun.{kind} most": own.max()}
+        if len(own) > 2:
+            (power, at_1), covariance = np.polyfit(np.log(phi), np.log(own), 1, cov=True)
+            found[f"spun.{kind} power"] = Measured(float(power), float(np.sqrt(covariance[0, 0])))
+            found[f"spun.{kind} phi"] = float(np.exp(-at_1 / power))
+    return found
 
 
 def _over(values, seed, own, other, same):

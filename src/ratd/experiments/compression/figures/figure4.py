@@ -35,7 +35,7 @@ def figure4(tables):
     below.text(
         start,
         0.96,
-        r" inertia below 5 % $\rightarrow$",
+        r" static $\rightarrow$",
         color=COLOURS[0],
         transform=below.get_xaxis_transform(),
         va="top",

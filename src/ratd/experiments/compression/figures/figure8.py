@@ -3,7 +3,8 @@
 import numpy as np
 
 from ratd.experiments.compression.figures.common import LEAST, PHI_LABEL, WAYS, damping_of, read_sets, strain_text
-from ratd.experiments.compression.strength import of_clusters, rates
+from ratd.experiments.compression.losses import rates
+from ratd.experiments.compression.strength import of_clusters
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 
 NAMES = {"damping": "damping and long steps", "made": "new contacts"}
