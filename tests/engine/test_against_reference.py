@@ -27,9 +27,17 @@ CASES = {  # laws, material, size, speed, step, steps
     "jkr": (jkr(), JKR(), SOFT, 1e-7, 10.0, 0.01 * T0, 1000),
     "jkr undamped": (jkr(damping="none"), JKR("none"), ICE, 1e-7, 10.0, 0.01 * T0, 1000),
     "jkr, DMT normal force": (jkr(normal_force="DMT"), JKRWithDMT(), SOFT, 1e-7, 10.0, 0.005 * T0, 2000),
-    "dmt": (dmt(friction="none"), DMT(0.5e-9, "none"), SILICA, 5e-7, 1.0, 10e-12, 1000),
-    "dmt velocity": (dmt(friction="velocity"), DMT(0.5e-9, "velocity"), SILICA, 5e-7, 1.0, 10e-12, 1000),
-    "dmt spring": (dmt(friction="spring"), DMT(0.5e-9, "spring"), SILICA, 5e-7, 1.0, 10e-12, 1000),
+    "dmt": (dmt(viscous_time=0.5e-9, friction="none"), DMT(0.5e-9, "none"), SILICA, 5e-7, 1.0, 10e-12, 1000),
+    "dmt velocity": (
+        dmt(viscous_time=0.5e-9, friction="velocity"),
+        DMT(0.5e-9, "velocity"),
+        SILICA,
+        5e-7,
+        1.0,
+        10e-12,
+        1000,
+    ),
+    "dmt spring": (dmt(viscous_time=0.5e-9, friction="spring"), DMT(0.5e-9, "spring"), SILICA, 5e-7, 1.0, 10e-12, 1000),
 }
 
 

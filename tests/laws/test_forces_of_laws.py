@@ -26,7 +26,10 @@ JKR = {
     "no friction": (jkr(friction="none"), reference.JKR(friction=False)),
     "DMT normal force": (jkr(normal_force="DMT"), reference.JKRWithDMT()),
 }
-DMT = {friction: (dmt(friction=friction), reference.DMT(0.5e-9, friction)) for friction in dmt_fields.FRICTIONS}
+DMT = {
+    friction: (dmt(viscous_time=0.5e-9, friction=friction), reference.DMT(0.5e-9, friction))
+    for friction in dmt_fields.FRICTIONS
+}
 
 
 def strained(law, radii, part, compression=1.1, still=False):

@@ -24,7 +24,7 @@ from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kin
 from ratd.observables.pieces import heaviest_pieces, pieces
 from ratd.observables.pressure import COMPONENTS
 
-__all__ = ["columns", "evolve", "touching_at_start"]
+__all__ = ["columns", "depth", "evolve", "touching_at_start"]
 
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
@@ -270,7 +270,7 @@ def _contacts(contacts, n):
 
 def _check_reach(contacts, position, radius, box):
     """Refuse contacts of spheres that are too far apart to hold each other."""
-    gap = -_depth(contacts, position, radius, box)
+    gap = -depth(contacts, position, radius, box)
     if len(contacts) and gap.max() > FARTHEST:
         i, j = contacts[gap.argmax(), :2]
         image = " A contact through the wall of the box needs its image too, (k, 5)." if has_images(box) else ""
@@ -280,7 +280,7 @@ def _check_reach(contacts, position, radius, box):
         )
 
 
-def _depth(pairs, position, radius, box):
+def depth(pairs, position, radius, box):
     """By how much the spheres of pairs overlap, over the smaller radius of each, (k,); below 0 where they are apart."""
     i, j = pairs[:, :2].T
     image = pairs[:, 2:] if pairs.shape[1] == 5 else np.zeros((len(pairs), 3))
@@ -298,13 +298,13 @@ def touching_at_start(position, radius, box):
             f"least {least:.3g} m."
         )
     pairs = touching_pairs(position, radius, box)
-    depth = _depth(pairs, position, radius, box)
-    if len(pairs) and depth.max() > DEEPEST:
-        worst = depth.argmax()
+    deep = depth(pairs, position, radius, box)
+    if len(pairs) and deep.max() > DEEPEST:
+        worst = deep.argmax()
         i, j = pairs[worst, :2]
         a_copy = " of a neighbouring box" if pairs[worst, 2:].any() else ""
         raise InputError(
-            f"The spheres {i} and {j}{a_copy} overlap by {depth[worst]:.2g} of the smaller radius; "
+            f"The spheres {i} and {j}{a_copy} overlap by {deep[worst]:.2g} of the smaller radius; "
             f"at most {DEEPEST:g} is allowed."
         )
     return pairs

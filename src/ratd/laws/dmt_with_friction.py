@@ -29,6 +29,11 @@ NO_FRICTION, VELOCITY, SPRING = range(len(FRICTIONS))
 PERIOD_PARTS = 20.0
 """The friction that grows with the rate follows it within 1/20 of the period in which the pair vibrates."""
 
+OF_MATERIAL = -1.0
+"""Viscous time of a law that takes that of the materials."""
+VISCOSITY_PART = 1.5
+"""A over T_vis/nu^2, see `viscous_time_of`."""
+
 N_OWN = 17
 (
     OVERLAP,  # delta [m]
@@ -320,7 +325,7 @@ class DMT(NamedTuple):
     Attributes
     ----------
     viscous_time : float
-        A [s] of the damping K A sqrt(delta) d(delta)/dt.
+        A [s] of the damping K A sqrt(delta) d(delta)/dt; `OF_MATERIAL` for that of the materials.
     friction : int
         `NO_FRICTION`, `VELOCITY` or `SPRING`.
     friction_time : float
@@ -360,7 +365,10 @@ class DMT(NamedTuple):
         contact[at + ADHESION] = adhesion
         contact[at + REDUCED] = r
         contact[at + SHEAR] = modulus
-        contact[at + DAMPING] = hertz * self.viscous_time
+        viscous_time = self.viscous_time
+        if viscous_time == OF_MATERIAL:
+            viscous_time = VISCOSITY_PART * pair.viscosity
+        contact[at + DAMPING] = hertz * viscous_time
         contact[at + ROLL_LIMIT] = 2.0 * adhesion * pair.rolling_limit
         if self.friction == VELOCITY:
             tau = self.friction_time
@@ -374,7 +382,7 @@ class DMT(NamedTuple):
             contact[at + SLIDE_STIFFNESS] = 8.0 * pair.sliding_modulus
             contact[at + ROLL_STIFFNESS] = 2.0 * adhesion * r
         elastic = math.sqrt(light / (1.5 * hertz * math.sqrt(overlap)))
-        viscous = light / max(hertz * self.viscous_time * math.sqrt(overlap), 1e-300)
+        viscous = light / max(hertz * viscous_time * math.sqrt(overlap), 1e-300)
         contact[at + STEP] = min(elastic, viscous)
         if self.friction == VELOCITY:
             # explicit, and stable up to 2 tau over the number of contacts of a sphere
@@ -425,9 +433,25 @@ class DMT(NamedTuple):
         return math.sqrt(max(contact[at + OVERLAP], S_END**4 * at_rest) * contact[at + REDUCED])
 
 
+def viscous_time_of(law, material):
+    """A [s] of the damping under a law of `dmt` in contacts of a material.
+
+    Where the law does not say it, A = 3/2 T_vis/nu^2: then K A sqrt(delta) = 4/3 E* A a is the damping
+    2 E* a T_vis/nu^2 that JKR has at the same contact radius a (Eq. 22 of Reissl et al. 2024).
+
+    Parameters
+    ----------
+    law : DMT
+    material : ratd.Material
+    """
+    if law.viscous_time != OF_MATERIAL:
+        return law.viscous_time
+    return VISCOSITY_PART * material.viscous_time / material.poisson_number**2
+
+
 def dmt(
     *,
-    viscous_time=0.5e-9,
+    viscous_time=None,
     friction="velocity",
     friction_time=0.0,
     sliding_limit=1.0,
@@ -438,9 +462,10 @@ def dmt(
 
     Parameters
     ----------
-    viscous_time : float
-        A [s] of the damping force K A sqrt(delta) d(delta)/dt; it decides how much of an impact is dissipated, and is
-        not printed in the paper.
+    viscous_time : float, optional
+        A [s] of the damping force K A sqrt(delta) d(delta)/dt; it decides how much of an impact is dissipated. That of
+        the material when not given, see `viscous_time_of`: 0.5 ns for silica, as of Umstaetter & Urbassek (2020), who
+        do not print it.
     friction : {"none", "velocity", "spring"}
         How sliding, rolling and twisting are resisted: not; by a force that grows with their rate, min(limit, eta
         |rate|); by springs that are cut back at the limit.
@@ -460,8 +485,9 @@ def dmt(
     """
     if friction not in FRICTIONS:
         raise InputError(f"friction is {friction!r}; allowed are {', '.join(FRICTIONS)}.")
+    if viscous_time is not None and not (is_number(viscous_time) and viscous_time >= 0.0):
+        raise InputError(f"viscous_time is {viscous_time!r}; it must be a number of at least 0, or None.")
     numbers = {
-        "viscous_time": viscous_time,
         "friction_time": friction_time,
         "sliding_limit": sliding_limit,
         "rolling_limit": rolling_limit,
@@ -470,4 +496,5 @@ def dmt(
     for name, value in numbers.items():
         if not (is_number(value) and value >= 0.0):
             raise InputError(f"{name} is {value!r}; it must be a number of at least 0.")
-    return DMT(friction=FRICTIONS.index(friction), **{name: float(value) for name, value in numbers.items()})
+    viscous_time = OF_MATERIAL if viscous_time is None else float(viscous_time)
+    return DMT(viscous_time, FRICTIONS.index(friction), **{name: float(value) for name, value in numbers.items()})

@@ -246,6 +246,7 @@ def of_energy(table):
             f"energy.{name} worst": gap.max(),
             f"energy.{name} quarter median": part["worst_to_quarter"].median(),
             f"energy.{name} quarter worst": part["worst_to_quarter"].max(),
+            f"energy.{name} quarter within": int((part["worst_to_quarter"] < CLOSED[name]).sum()),
             f"energy.{name} quarter verdict": verdict(part["worst_to_quarter"].max() < CLOSED[name]),
             f"energy.{name} run median": part["worst"].median(),
             f"energy.{name} run worst": part["worst"].max(),

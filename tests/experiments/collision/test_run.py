@@ -1,6 +1,7 @@
 """`ratd.collide`: what comes back, what is refused, the same bits after a kill; two spheres and their solution."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -10,10 +11,14 @@ import ratd
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments import intervals
+from ratd.experiments.collision.approach import approach, first_touch
 from ratd.experiments.collision.laws import balance_of, longest_step, step_of
 from ratd.experiments.collision.run import at_rest, collide
 from ratd.experiments.collision.sticking import breaking_energy_of, parting_velocity, sticking_velocity
 from ratd.experiments.evolve import evolve
+from ratd.laws.derjaguin_muller_toporov import hertz_stiffness
+from ratd.laws.dmt_with_friction import viscous_time_of
+from ratd.laws.johnson_kendall_roberts import viscoelastic_damping
 
 SILICA = MATERIALS["silica"]
 SMALL = ratd.build_cluster(np.full(14, 0.3e-6), 1.1e-6, second_contact=0.5, seed=1)
@@ -209,3 +214,52 @@ def test_own_spheres_that_only_touch_come_to_rest_in_one_piece(seed):
     assert len(rested.contacts) == len(grain.contacts) == 9
     distance = np.linalg.norm(rested.position[rested.contacts[:, 0]] - rested.position[rested.contacts[:, 1]], axis=1)
     assert (distance < 2e-7).all()
+
+
+def test_two_that_pass_within_the_gap_do_not_meet():
+    """They come within 20 nm of each other on straight lines, and do not touch."""
+    passed = 0
+    for seed in range(60):
+        how = {"impact_parameter": 0.8, "seed": seed, "relaxed": True, "duration": 3e-7, "records": 3}
+        near = [approach(SMALL, SMALL, 10.0, 0.8, gap, seed)[2] for gap in (20e-9, 1e-12)]
+        assert near[0] == near[1]
+        if not near[0] and np.isfinite(reach_of(seed)):
+            with pytest.warns(UserWarning, match="the two pass each other"):
+                run = collide(SMALL, SMALL, 10.0, **how)
+            assert (run["n_contacts"].values == 2 * SMALL.n_contacts).all()
+            passed += 1
+            break
+    assert passed == 1
+
+
+def reach_of(seed):
+    """Shift at which the two of a seed are 20 nm apart; infinite where they pass by more."""
+    position, *_ = approach(SMALL, SMALL, 10.0, 0.8, 20e-9, seed)
+    first, other = np.split(position, 2)
+    return first_touch(first, SMALL.radius, other, SMALL.radius, 20e-9)
+
+
+def test_an_early_state_of_a_collision_is_told():
+    with pytest.warns(UserWarning, match="after 2e-08 s the two still fly at each other"):
+        collide(SMALL, SMALL, 10.0, relaxed=True, duration=2e-8, records=3, snapshot_every=0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        collide(SMALL, SMALL, 1.0, relaxed=True, duration=1.5e-6, records=3, snapshot_every=0)
+
+
+def test_the_damping_is_that_of_the_material():
+    """As of JKR at the same radius of the contact; for silica the 0.5 ns that the paper's authors use."""
+    assert viscous_time_of(ratd.laws.dmt(), SILICA) == pytest.approx(0.5e-9, rel=1e-3)
+    assert viscous_time_of(ratd.laws.dmt(viscous_time=1e-9), SILICA) == 1e-9
+    ice = MATERIALS["ice"]
+    time = viscous_time_of(ratd.laws.dmt(), ice)
+    radius, overlap = 50e-9, 1e-9
+    of_dmt = hertz_stiffness(radius, ice.reduced_modulus) * time * math.sqrt(overlap)
+    viscosity = ice.viscous_time / ice.poisson_number**2
+    assert of_dmt == pytest.approx(viscoelastic_damping(math.sqrt(radius * overlap), ice.reduced_modulus, viscosity))
+    pair = ratd.Grain([[0, 0, 0], [2e-7 - 1e-9, 0, 0]], [1e-7, 1e-7], ice)
+    how = {"relaxed": True, "duration": 3e-9, "records": 3, "snapshot_every": 0, "timestep": 1e-13}
+    told, own = (collide(pair, pair, 20.0, law=ratd.laws.dmt(**law), **how) for law in ({"viscous_time": time}, {}))
+    np.testing.assert_array_equal(told["position"], own["position"])
+    soft = collide(pair, pair, 20.0, law=ratd.laws.dmt(viscous_time=0.5e-9), **how)
+    assert np.abs(soft["position"] - own["position"]).max() > 1e-11

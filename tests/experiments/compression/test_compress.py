@@ -26,6 +26,7 @@ from ratd.experiments.compression.static import (
 )
 from ratd.experiments.compression.strain import strain_dataset
 from ratd.experiments.compression.stretch_command import show
+from ratd.laws.contact_constants import equilibrium_compression, pull_off_force
 from ratd.pipeline import io
 from ratd.pipeline.provenance import provenance
 
@@ -469,3 +470,71 @@ def test_the_state_of_a_run_can_be_taken_up(run):
     again = strain_dataset(state, np.zeros((1, 60)), Parts(None, None, None))
     assert (again["position"].values == run["position"].values).all()
     assert Cluster(ratd.grow_bcca(64, seed=0)).volume == pytest.approx(64 * 4 / 3 * np.pi * 1e-21)
+
+
+def lattice(along_x):
+    """64 spheres of ice at rest against each other along y and z, with a gap along x [m], and the edges of a box."""
+    ice = MATERIALS["ice"]
+    rest = equilibrium_compression(0.5e-7, ice.surface_energy, ice.reduced_modulus)
+    step = np.array([2e-7 + along_x, 2e-7 - rest, 2e-7 - rest])
+    places = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    return ratd.Grain(places * step, np.full(64, 1e-7), ice), 4 * step
+
+
+@pytest.mark.parametrize("along_x", [0.0, 1e-12])
+def test_spheres_a_hair_apart_hold_as_those_that_touch(along_x):
+    """The tension of 8/9 of the pull-off force, at first touch, on each contact across a face."""
+    grain, edges = lattice(along_x)
+    assert grain.n_contacts == 144
+    pulled = ratd.stretch(grain, 5e-5, box_length=edges)
+    at_touch = 8.0 / 9.0 * pull_off_force(0.5e-7, 0.1) * 16 / (edges[1] * edges[2])
+    assert -pulled.attrs["residual_pressure"] == pytest.approx(at_touch, rel=0.02)
+    # never below what it holds at rest
+    assert pulled.attrs["tensile_strength"] == pytest.approx(at_touch, rel=0.02)
+    assert pulled.attrs["phi_strength"] == pulled.attrs["phi_start"]
+
+
+def test_a_tension_that_peaks_within_the_mean_is_told(tmp_path):
+    """Contacts that all part at once, at 1.19 MPa, in 0.9 % of the length."""
+    ice = MATERIALS["ice"]
+    grain, edges = lattice(-equilibrium_compression(0.5e-7, ice.surface_energy, ice.reduced_modulus))
+    with pytest.warns(UserWarning, match="the tension peaks in less than 2 %"):
+        pulled = ratd.stretch(grain, 1e-4, box_length=edges)
+    exact = pull_off_force(0.5e-7, 0.1) * 16 / (edges[1] * edges[2])
+    assert pulled.attrs["tensile_strength"] < 0.5 * exact < pulled.attrs["greatest_record"] < exact
+    # the file of the command says so too, whenever it is read
+    several(
+        tmp_path / "a.nc",
+        "stretched",
+        ice,
+        provenance("code", {}),
+        1,
+        lambda *_: stretched_row(pulled.assign_attrs(seed=0)),
+    )
+    assert any(line.startswith("but the tension peaks") for line in show(tmp_path / "a.nc", tmp_path / "a"))
+
+
+def test_a_box_shrinks_with_the_touching_spheres_that_fill_it():
+    places = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    grain = ratd.Grain(places * 2e-7, np.full(64, 1e-7), "ice")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pulled = ratd.stretch(grain, 1e-4, box_length=8e-7)
+    rest = equilibrium_compression(0.5e-7, 0.1, MATERIALS["ice"].reduced_modulus)
+    assert pulled["box_length"].values[0, 1] == pytest.approx(8e-7 - 4 * rest, rel=1e-9)
+    assert pulled["n_contacts"].values[0] == 192
+
+
+def test_a_straight_chain_that_cannot_give_way_is_told_of():
+    places = np.outer(np.arange(40), [2e-7, 0.0, 0.0])
+    with pytest.warns(UserWarning, match="at the end monomers overlap by up to .* a perfectly straight or regular"):
+        ratd.compress(ratd.Grain(places, np.full(40, 1e-7), "ice"), 1e-3, 0.2, balance=False)
+
+
+def test_runs_of_one_aggregate_have_no_error():
+    grain = ratd.grow_bcca(64, seed=0)
+    moved = grain.position + 1e-12 * np.random.default_rng(0).normal(size=(64, 3))
+    runs = [ratd.compress(each, 3e-5, 0.25) for each in (grain, ratd.Grain(moved, grain.radius, "ice"))]
+    with pytest.warns(UserWarning, match="the 2 runs are of one aggregate"):
+        found = ratd.compressive_strength(runs, 0.06, 0.2)
+    assert found["n"] == 2 and np.isnan(found["ratio_error"]) and found["ratio"] > 0.0

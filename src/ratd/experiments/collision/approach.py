@@ -70,7 +70,7 @@ def approach(a, b, velocity, impact_parameter, gap, seed):
     position, velocities : (n + m, 3) float64 array
         [m] and [m/s], first those of a; the centre of mass of both is in the origin.
     meet : bool
-        False where they pass each other; they then begin with `gap` along x between them.
+        False where they pass each other on straight lines, if only by less than `gap`.
     """
     rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(int(seed))))
     places = []
@@ -82,8 +82,9 @@ def approach(a, b, velocity, impact_parameter, gap, seed):
     )
     places[1][:, 1] += impact_parameter * reach
     shift = first_touch(places[0], a.radius, places[1], b.radius, gap)
-    meet = bool(np.isfinite(shift))
-    if not meet:
+    meet = bool(np.isfinite(first_touch(places[0], a.radius, places[1], b.radius, 0.0)))
+    if not np.isfinite(shift):
+        # those that pass by more than the gap begin with it along x between them
         shift = (places[0][:, 0] + a.radius).max() - (places[1][:, 0] - b.radius).min() + gap
     places[1][:, 0] += shift
     masses = a.mass.sum(), b.mass.sum()

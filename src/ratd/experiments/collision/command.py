@@ -59,7 +59,7 @@ def command(file, material, unit, starts, out, velocity, other, impact_parameter
     how |= {} if timestep is None else {"timestep": timestep}
     source = source_hash(modules=["ratd.experiments.collision.run", *OF_STARTS])
     made_with = provenance(source, {"material": asdict(material), "unit": unit, **how}, files)
-    contact = contact_of(law_of(law, dmt))
+    contact = contact_of(law_of(law, dmt), material)
     resting = []
 
     def make(start, checkpoint, progress):

@@ -28,7 +28,7 @@ from ratd.experiments.collision.fragmentation import (
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
-from ratd.laws.dmt_with_friction import PERIOD_PARTS, dmt
+from ratd.laws.dmt_with_friction import PERIOD_PARTS
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
 
@@ -89,7 +89,7 @@ def values(table, thresholds, likeness):
         found[f"velocities {key}"] = f"{row['velocities']:.0f}"
     found |= by_sample(table, "velocity", "mrn") | with_and_without(table, COLUMNS) | largest(table)
     found |= samples_of_the_law() | of_same_samples(table) | _one_pair(table) | _same_collisions(table)
-    found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants()
+    found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants(table)
     found |= _recipe(thresholds) | _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
     found |= halved(table) | _late(table) | _shorter(table, "velocity", "mrn")
     found |= {
@@ -324,7 +324,7 @@ def _exponents(thresholds):
     return found
 
 
-def _constants():
+def _constants(table):
     """``constant NAME``: what silica and its contacts are in these collisions."""
     silica = MATERIALS["silica"]
     return {
@@ -333,7 +333,7 @@ def _constants():
         "constant rho": f"{silica.density:g} kg/m³",
         "constant gamma": f"{silica.surface_energy * 1e3:g} mJ/m²",
         "constant xi": f"{silica.critical_rolling_displacement / NM:g} nm",
-        "constant A": f"{dmt().viscous_time * 1e9:g} ns",
+        "constant A": f"{table.loc[table['law'] == 'velocity', 'damping_time'].iloc[0] * 1e9:g} ns",
         "constant tau": f"1/{PERIOD_PARTS:.0f}",
     }
 

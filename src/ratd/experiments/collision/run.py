@@ -25,6 +25,8 @@ RELAXATION_STEP = 1 / 32
 explicit, feeds spheres of several contacts."""
 DURATION = 3e-6
 """How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
+STILL = 0.2
+"""Part of the velocity at which two clusters that still near each other at the end are said to have barely met."""
 FARTHEST = 0.02
 """Part of the smallest radius by which the clusters may come nearer in a step: faster ones would pass through each
 other without a contact."""
@@ -65,6 +67,26 @@ def too_short(velocity, duration, gap=GAP):
         f"duration is {duration:g} s, in which the two do not meet: they begin {gap:g} m apart with {velocity:g} m/s; "
         f"take at least {2.0 * gap / velocity:.2g} s."
     )
+
+
+def approach_speed(run, mass, owner):
+    """Speed [m/s] at which the centres of mass of what was one cluster and the other still near each other at the end.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        With ``position`` and ``velocity`` of all spheres.
+    mass : (n,) float64 array
+        [kg]
+    owner : (n,) int array
+        0 for the spheres of the first cluster, else 1.
+    """
+    centre, speed = (
+        [mass[own] @ run[name].values[own] / mass[own].sum() for own in (owner == 0, owner == 1)]
+        for name in ("position", "velocity")
+    )
+    way = centre[1] - centre[0]
+    return float(way @ (speed[0] - speed[1]) / np.linalg.norm(way))
 
 
 def collide(
@@ -130,12 +152,13 @@ def collide(
     InputError
         If an argument is wrong.
     RuntimeError
-        If the balance of energy is off by more than `ratd.experiments.collision.laws.balance_of`.
+        If the balance of energy is off by more than the part `ratd.experiments.collision.laws.balance_of` of what
+        `ratd.evolve` sets it beside: of a slow collision that is the energy of its contacts, not that of the impact.
 
     Warns
     -----
     UserWarning
-        If the two do not meet within the duration, or pass each other.
+        If the two do not meet within the duration, still fly at each other at its end, or pass each other.
     """
     law = law_of(law, dmt)
     _check(a, b, velocity, impact_parameter, seed, gap)
@@ -180,6 +203,14 @@ def collide(
         balance=balance_of(law), checkpoint=checkpoint, progress=None if progress is None else tell,
     )  # fmt: skip
     owner = np.repeat([0, 1], [len(a.radius), len(b.radius)])
+    nearing = approach_speed(run, np.concatenate([a.mass, b.mass]), owner)
+    if meet and velocity * duration >= 2.0 * gap and nearing > STILL * velocity:
+        warnings.warn(
+            f"after {duration:g} s the two still fly at each other with {nearing:.2g} of {velocity:g} m/s: what is "
+            "told is an early state of the collision.",
+            UserWarning,
+            stacklevel=2,
+        )
     run["cluster"] = ("monomer", owner, {"units": "1", "long_name": "cluster that the sphere came with"})
     run.attrs |= {
         "material": material.name,

@@ -7,7 +7,7 @@ from ratd.aggregates.mrn import mrn
 from ratd.base.materials import Material
 from ratd.experiments.collision.files import cluster_row, clusters_of, collision_row
 from ratd.experiments.collision.run import at_rest, collide
-from ratd.laws.dmt_with_friction import DMT, FRICTIONS, dmt
+from ratd.laws.dmt_with_friction import DMT, FRICTIONS, dmt, viscous_time_of
 from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline import io
 from ratd.pipeline.jobs import duration
@@ -48,10 +48,10 @@ def law_from(settings):
     return dmt(**options) if settings["law"] == "dmt" else jkr(**options)
 
 
-def contact_of(law):
+def contact_of(law, material):
     """What a row of a file of collisions says of a law: ``friction``, and ``damping_time`` [s], 0 but for DMT."""
     if isinstance(law, DMT):
-        return {"friction": FRICTIONS[law.friction], "damping_time": law.viscous_time}
+        return {"friction": FRICTIONS[law.friction], "damping_time": viscous_time_of(law, material)}
     return {"friction": "jkr", "damping_time": 0.0}
 
 
@@ -135,7 +135,7 @@ def collided(cluster, settings, rotation, *, snapshot_every=0, checkpoint=None, 
         sample=cluster.seed,
         law=settings["law_name"],
         cluster=settings["cluster_name"],
-        **contact_of(law),
+        **contact_of(law, cluster.material),
         second_contact=settings["second_contact"],
         source=source,
     )

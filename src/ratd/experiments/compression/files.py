@@ -46,7 +46,9 @@ RUN = {
 PULL = {
     **{name: RUN[name] for name in ("monomer_radius", "time_unit", "strain_rate")},
     "phi_start": ("1", "filling factor at which the pulling began"),
-    "tensile_strength": ("Pa", "greatest tension, 0 where there is none"),
+    "tensile_strength": ("Pa", "greatest tension in a mean over 2 % in length, 0 where there is none"),
+    "greatest_record": ("Pa", "greatest tension in a single record"),
+    "inertial_tension": ("Pa", "tension by which the inertia of the aggregate resists the growing box"),
     "phi_strength": ("1", "filling factor there, nan where there is no tension"),
     "residual_pressure": ("Pa", "pressure left at rest before the pulling"),
 }

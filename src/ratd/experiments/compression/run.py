@@ -13,10 +13,12 @@ from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.engine import checkpoint as checkpoints
-from ratd.engine.state import new_state
+from ratd.engine.layout import RADIUS, X
+from ratd.engine.state import monomer_rows, new_state
 from ratd.experiments.compression.static import box_rate, static_from, time_unit
 from ratd.experiments.compression.steps import LongSteps, integrators
 from ratd.experiments.compression.strain import Parts, strain, strain_dataset
+from ratd.experiments.evolve import depth
 from ratd.experiments.unfinished import attached
 from ratd.geometry.box import periodic, touching_pairs
 from ratd.geometry.shape import greatest_extent
@@ -34,6 +36,8 @@ LOOSEST = 1e-6
 """Least filling factor to begin with: clusters of a million monomers start at 5e-4."""
 DENSEST = 0.64
 """Greatest `until_phi`: random close packing of equal spheres."""
+DEEP = 0.15
+"""Overlap over the smaller radius beyond which a compression is doubted; at phi = 0.5 it is some 0.05 as a rule."""
 TIMESTEP_FACTOR = 0.14
 """f of the explicit step: 0.2 t_0 for equal monomers, at which P lies within 1 % of that at half the step up to
 phi = 0.1."""
@@ -173,7 +177,8 @@ def compress(
     Warns
     -----
     UserWarning
-        If inertia dominates up to phi = 0.1, or to `until_phi` where this is less.
+        If inertia dominates up to phi = 0.1, or to `until_phi` where this is less; if two monomers overlap at the end
+        by more than `DEEP` of the smaller radius, for which no law of contact is meant.
 
     References
     ----------
@@ -225,7 +230,23 @@ def compress(
 
     with attached("run", lambda error: dataset(*error.reached)):
         reached = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
+    _warn_of_overlap(reached[0], parts)
     return dataset(*reached)
+
+
+def _warn_of_overlap(state, parts):
+    """Warn where monomers are pressed into each other, as those of a perfectly straight chain or of a crystal are."""
+    rows = monomer_rows(state)
+    position, radius = np.ascontiguousarray(rows[:, X : X + 3]), np.ascontiguousarray(rows[:, RADIUS])
+    box = periodic(np.array(parts.box.edges(state.scalar)))
+    deepest = depth(touching_pairs(position, radius, box), position, radius, box).max(initial=0.0)
+    if deepest > DEEP:
+        warnings.warn(
+            f"at the end monomers overlap by up to {deepest:.2g} of the smaller radius, for which no law of contact is "
+            "meant; a perfectly straight or regular aggregate cannot give way: move its monomers a little",
+            UserWarning,
+            stacklevel=3,
+        )
 
 
 def compression_law():

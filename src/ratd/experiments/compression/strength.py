@@ -43,6 +43,8 @@ UNEQUAL = 1.2
 """Greatest ratio of the P_0 of two clusters whose unequal monomers are drawn from one law."""
 ALIKE = ("material", "n_monomers", "strain_rate", "scheme", "law")
 """Attributes that are the same in runs that differ in their seeds alone."""
+SAME_SIZE = 1e-5
+"""Part by which the radii of gyration of runs of one aggregate differ at most."""
 NEAR = 1.11
 """A value at phi is that of all bins from phi/NEAR to phi NEAR."""
 
@@ -344,7 +346,8 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     -------
     dict
         ``exponent``; ``prefactor``, P/(P_0 phi^3) at phi = 0.1 from the fit; ``ratio``, the geometric mean of
-        P/(P_0 phi^3) in the range; each with ``_error`` beside it, NaN for a single run; ``n``, number of runs.
+        P/(P_0 phi^3) in the range; each with ``_error`` beside it, NaN for a single run, and for runs of one aggregate,
+        moved by a hair each, whose scatter says nothing of others; ``n``, number of runs.
 
     Raises
     ------
@@ -355,7 +358,7 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     Warns
     -----
     UserWarning
-        If a run is not static from `low` on.
+        If a run is not static from `low` on, or if all runs are of one aggregate.
     """
     found = list(run) if isinstance(run, list | tuple) else [run]
     _check_runs(found)
@@ -380,7 +383,17 @@ def compressive_strength(run, low=FIT_RANGE[0], high=FIT_RANGE[1]):
     fit = fit_power_law(table, low, high)
     names = ("exponent", "prefactor", "ratio")
     values = dict(zip(names, fit.value.tolist(), strict=True))
-    errors = dict(zip([f"{name}_error" for name in names], fit.error.tolist(), strict=True))
+    sizes = [each.attrs.get("radius_of_gyration", np.nan) for each in found]
+    one = len(found) > 1 and max(sizes) - min(sizes) < SAME_SIZE * max(sizes)
+    if one:
+        warnings.warn(
+            f"the {len(found)} runs are of one aggregate, moved by a hair each: what they differ by is no error of the "
+            "mean, and errors are told as NaN; other aggregates of the same kind differ by more.",
+            UserWarning,
+            stacklevel=2,
+        )
+    error = np.full(len(names), np.nan) if one else fit.error
+    errors = dict(zip([f"{name}_error" for name in names], error.tolist(), strict=True))
     return {**values, **errors, "n": fit.n}
 
 

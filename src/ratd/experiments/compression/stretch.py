@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import xarray as xr
 
-from ratd.aggregates.grain import Grain
+from ratd.aggregates.grain import GAP_TOLERANCE, Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material
 from ratd.drives.squeezing import squeezing
@@ -25,15 +25,17 @@ from ratd.experiments.compression.run import (
 from ratd.experiments.compression.static import box_rate, inertial_tension
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS, Parts, state_of, strain, strain_dataset
-from ratd.experiments.evolve import touching_at_start
+from ratd.experiments.evolve import depth, touching_at_start
 from ratd.experiments.relax import find_rest, start_anew
 from ratd.experiments.unfinished import attached
-from ratd.geometry.box import periodic
+from ratd.geometry.box import pairs_within, periodic
 from ratd.geometry.shape import greatest_extent
 from ratd.laws.chosen import check_stiffness, law_of
+from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
+from ratd.laws.jkr_with_springs import JKR
 from ratd.pipeline.kinds import MATERIAL
 
-__all__ = ["AXES", "stretch", "tension"]
+__all__ = ["AXES", "doubts", "stretch", "tension"]
 
 AXES = {"x": (1.0, 0.0, 0.0), "xyz": (1.0, 1.0, 1.0)}
 """Axes along which the box may grow."""
@@ -49,6 +51,8 @@ BALANCE, LONG_BALANCE = 0.005, 0.05
 """Parts of what moved that the balance of energy may be off by, with explicit and with long steps."""
 INERTIAL_SHARE = 0.1
 """Part of the strength that may be the inertia of what the growing box carries along."""
+NARROW = 1.5
+"""Tension in a single record over the strength from which on its peak is said to be narrow."""
 UNLOADING_STRAIN = 2e-4
 """ln L between two records while a box lets go of what presses on it."""
 REST_STEPS = 200
@@ -82,7 +86,8 @@ def stretch(
         Whether the box first grows along all axes, at the same rate, until the aggregate does not press on it any more,
         and the aggregate comes to rest there. Else what it presses with at rest is still there when the pull begins.
     box_length : float or (3,) array_like, optional
-        Edge, or edges along x, y and z, of the box [m] that a `Grain` fills, by whose copies it is held.
+        Edge, or edges along x, y and z, of the box [m] that a `Grain` fills, by whose copies it is held. Where spheres
+        that only touch are pressed together first (`ratd.aggregates.grain.seated`), the box shrinks with them.
     law, timestep_factor, long_steps, checkpoint
         As of `ratd.compress`; after a compression the law has to be that of it.
     progress : callable, optional
@@ -92,8 +97,9 @@ def stretch(
     -------
     xarray.Dataset
         As of `ratd.compress`, without snapshots. ``tension`` is -P_xx, or -P where all axes are pulled. The attributes
-        hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, 0 where there is no tension,
-        ``phi_strength``, where that is, ``phi_start``, and ``residual_pressure`` [Pa], what it presses with at rest.
+        hold ``tensile_strength`` [Pa], its greatest value in a mean over 2 % in L, or that at rest where it is
+        greater, 0 where there is no tension, ``phi_strength``, where that is, ``phi_start``, and ``residual_pressure``
+        [Pa], what it presses with at rest on the faces that are pulled; below 0 where they pull already.
 
     Raises
     ------
@@ -133,7 +139,7 @@ def stretch(
     integrator, _ = integrators(
         material, attrs["monomer_radius"], attrs["time_unit"], timestep_factor, long_steps, strain_rate
     )
-    edges = np.array(periodic(box_length)[:3]) if filled else compressed["box_length"].values[-1]
+    edges = _edges(compressed, cluster, box_length) if filled else compressed["box_length"].values[-1]
     rate = -box_rate(strain_rate, attrs["time_unit"])
     marks = np.arange(1, round(LONGEST / RECORD_STRAIN) + 1) * RECORD_STRAIN / rate
 
@@ -166,19 +172,26 @@ def stretch(
     with attached("run", lambda error: strain_dataset(*error.reached[:2], parts)):
         state, rows, _ = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
     found = strain_dataset(state, rows, parts)
-    pull = _smooth(tension(rows[1:], axes))
+    single = tension(rows[1:], axes)
+    pull = _smooth(single)
     best = int(np.argmax(pull))
+    at_rest = tension(rows[:1], axes)[0]
     found["tension"] = (
         "record",
         tension(rows[1:], axes),
         {"units": "Pa", "long_name": "tension along the pulled axes"},
     )
     # what falls apart as soon as nothing presses on it has no strength
-    held = pull[best] > 0.0
-    about = {"tensile_strength": pull[best] if held else 0.0}
-    about["phi_strength"] = _smooth(found["phi_mean"].values)[best] if held else np.nan
-    _warn_of_inertia(about["tensile_strength"], rate, edges[0], rows[0, COLUMNS["phi"][0]] * material.density)
-    about |= {"phi_start": rows[0, COLUMNS["phi"][0]], "residual_pressure": -tension(rows[:1], axes)[0], "axes": axes}
+    phi_start = rows[0, COLUMNS["phi"][0]]
+    strength = max(pull[best], at_rest, 0.0)
+    about = {"tensile_strength": strength, "phi_start": phi_start, "residual_pressure": -at_rest, "axes": axes}
+    about["phi_strength"] = np.nan
+    if strength > 0.0:
+        about["phi_strength"] = phi_start if strength == at_rest else _smooth(found["phi_mean"].values)[best]
+    about["inertial_tension"] = inertial_tension(rate, edges[0], phi_start * material.density, WINDOW * RECORD_STRAIN)
+    about["greatest_record"] = max(float(single.max()), at_rest, 0.0)
+    for told in doubts(about):
+        warnings.warn(told, stacklevel=2)
     names = ("material", *MATERIAL, "time_unit", "monomer_radius", "seed", "n_monomers")
     kept = {name: attrs[name] for name in names}
     return found.assign_attrs(
@@ -186,16 +199,30 @@ def stretch(
     )
 
 
-def _warn_of_inertia(strength, rate, edge, density):
-    """Warn where the greatest tension may be that of the start, which holds nothing together."""
-    inertia = inertial_tension(rate, edge, density, WINDOW * RECORD_STRAIN)
+def doubts(about):
+    """Sentences on a tensile strength that may not be one, from the attributes of a pull; an empty list for others."""
+    strength, inertia = about["tensile_strength"], about.get("inertial_tension", 0.0)
+    greatest = about.get("greatest_record", strength)
+    said = []
     if strength > 0.0 and inertia > INERTIAL_SHARE * strength:
-        warnings.warn(
+        said.append(
             f"the tensile strength, {strength:.3g} Pa, is not well above the {inertia:.2g} Pa by which the inertia of "
             "the aggregate resists a box that grows so fast: take a lower strain_rate; if it falls with the rate, the "
-            "aggregate does not hold to its copies",
-            stacklevel=3,
+            "aggregate does not hold to its copies"
         )
+    elif greatest > NARROW * strength:
+        said.append(
+            f"the tension peaks in less than 2 % of the length, over which the tensile strength, {strength:.3g} Pa, is "
+            f"a mean: in a single record it is {greatest:.3g} Pa. So does an aggregate that breaks all at once"
+        )
+    return said
+
+
+def _edges(given, cluster, box_length):
+    """Edges [m] of the box that an aggregate fills, which shrinks as the aggregate was pressed to rest."""
+    edges = np.array(periodic(box_length)[:3])
+    wide, now = (np.ptp(grain.position, axis=0).max() for grain in (given, cluster.grain))
+    return edges if now == wide else edges * (now / wide)
 
 
 def _has_state(run):
@@ -204,9 +231,12 @@ def _has_state(run):
 
 
 def _in_box(cluster, parts):
-    """An aggregate in its box, in contact with its copies where they overlap."""
+    """An aggregate in its box, in contact with its copies where they touch as monomers of a `Grain` do."""
     grain = cluster.grain
     pairs = touching_at_start(grain.position, grain.radius, parts.box)
+    if isinstance(parts.law, JKR):
+        # which holds a little beyond touch
+        pairs = np.concatenate([pairs, _just_apart(grain, parts.box)])
     if not pairs[:, 2:].any():
         edges = " x ".join(f"{edge:.4g}" for edge in parts.box[:3])
         extent = greatest_extent(grain.position, grain.radius)
@@ -215,6 +245,17 @@ def _in_box(cluster, parts):
             "nothing to pull."
         )
     return new_state(grain.position, grain.radius, grain.material, pairs, *parts)
+
+
+def _just_apart(grain, box):
+    """Pairs that do not overlap, but less apart than `GAP_TOLERANCE`, with images, (k, 5)."""
+    own = grain.material.surface_energy, grain.material.reduced_modulus
+    widest = equilibrium_compression(grain.radius.max() / 2.0, *own)
+    edges = np.array(box.edges(np.zeros(1)))
+    near = pairs_within(grain.position, grain.radius, GAP_TOLERANCE * widest, edges)
+    a_i, a_j = grain.radius[near[:, :2]].T
+    gap = -depth(near, grain.position, grain.radius, box) * np.minimum(a_i, a_j)
+    return near[(gap > 0.0) & (gap < GAP_TOLERANCE * equilibrium_compression(reduced_radius(a_i, a_j), *own))]
 
 
 def tension(rows, axes):

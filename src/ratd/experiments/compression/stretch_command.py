@@ -22,7 +22,7 @@ from ratd.experiments.command import (
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
 from ratd.experiments.compression.run import compress
-from ratd.experiments.compression.stretch import AXES, stretch
+from ratd.experiments.compression.stretch import AXES, doubts, stretch
 from ratd.experiments.saved import read_runs
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
 from ratd.pipeline.provenance import provenance, source_hash
@@ -99,8 +99,9 @@ def show(path, out):
         f"{answer('tensile strength', strength, 'Pa')}: {np.mean(strength / expected):.3g} of "
         f"{TENSILE_FACTOR:g} gamma/r_0 phi^1.8 (Tatsuuma et al. 2019)",
         answer("phi at the greatest tension", phi, "").rstrip(),
-        answer("pressure at rest before the pull", pressed, "Pa"),
+        answer(f"pressure on {ways} at rest before the pull", pressed, "Pa"),
     ]
+    lines += [f"but {told}" for told in dict.fromkeys(told for run in found for told in doubts(run.attrs)[:1])][:1]
     figure = Path(f"{out}.png")
     save(_figure(found, expected[0], ways), figure)
     return [*lines, f"{figure} written"]
