@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 def dmt(
     *,
-    viscous_time: float = 5e-10,
+    viscous_time: float | None = None,
     friction: Literal["none", "velocity", "spring"] = "velocity",
     friction_time: float = 0.0,
     sliding_limit: float = 1.0,

@@ -172,24 +172,11 @@ def stretch(
     with attached("run", lambda error: strain_dataset(*error.reached[:2], parts)):
         state, rows, _ = strain(state, parts, marks, key=key, checkpoint=checkpoint, **how)
     found = strain_dataset(state, rows, parts)
-    single = tension(rows[1:], axes)
-    pull = _smooth(single)
-    best = int(np.argmax(pull))
-    at_rest = tension(rows[:1], axes)[0]
-    found["tension"] = (
-        "record",
-        tension(rows[1:], axes),
-        {"units": "Pa", "long_name": "tension along the pulled axes"},
-    )
-    # what falls apart as soon as nothing presses on it has no strength
-    phi_start = rows[0, COLUMNS["phi"][0]]
-    strength = max(pull[best], at_rest, 0.0)
-    about = {"tensile_strength": strength, "phi_start": phi_start, "residual_pressure": -at_rest, "axes": axes}
-    about["phi_strength"] = np.nan
-    if strength > 0.0:
-        about["phi_strength"] = phi_start if strength == at_rest else _smooth(found["phi_mean"].values)[best]
-    about["inertial_tension"] = inertial_tension(rate, edges[0], phi_start * material.density, WINDOW * RECORD_STRAIN)
-    about["greatest_record"] = max(float(single.max()), at_rest, 0.0)
+    about = {"units": "Pa", "long_name": "tension along the pulled axes"}
+    found["tension"] = ("record", tension(rows[1:], axes), about)
+    about = {"axes": axes, **_strength(rows, found["phi_mean"].values, axes)}
+    density = about["phi_start"] * material.density
+    about["inertial_tension"] = inertial_tension(rate, edges[0], density, WINDOW * RECORD_STRAIN)
     for told in doubts(about):
         warnings.warn(told, stacklevel=2)
     names = ("material", *MATERIAL, "time_unit", "monomer_radius", "seed", "n_monomers")
@@ -197,6 +184,21 @@ def stretch(
     return found.assign_attrs(
         {name: _plain(value) for name, value in {**kept, **about}.items()}, strain_rate=strain_rate
     )
+
+
+def _strength(rows, phi_mean, axes):
+    """Attributes of a pull that its records (m, columns) tell, of which the first is that at rest."""
+    single = tension(rows[1:], axes)
+    pull = _smooth(single)
+    best = int(np.argmax(pull))
+    at_rest = tension(rows[:1], axes)[0]
+    phi_start = rows[0, COLUMNS["phi"][0]]
+    # what falls apart as soon as nothing presses on it has no strength
+    strength = max(pull[best], at_rest, 0.0)
+    about = {"tensile_strength": strength, "phi_strength": np.nan, "phi_start": phi_start}
+    if strength > 0.0:
+        about["phi_strength"] = phi_start if strength == at_rest else _smooth(phi_mean)[best]
+    return about | {"residual_pressure": -at_rest, "greatest_record": max(single.max(), at_rest, 0.0)}
 
 
 def doubts(about):
