@@ -124,6 +124,8 @@ def test_a_cluster_is_pulled_apart_from_its_file(tmp_path):
     assert float(said[1]) == pytest.approx(strength.mean(), rel=1e-3)
     assert float(said[3]) == pytest.approx(strength.mean() / (0.6 * 0.1 / 1e-7 * 0.2**1.8), rel=0.01)
     assert cluster.with_name("cluster_stretched.png").read_bytes()[1:4] == b"PNG"
+    refused = run("stretch", cluster, "--material", "ice", "--phi", "0.001", "--out", cluster.with_name("loose"))
+    assert refused.exit_code != 0 and "--phi is 0.001; it must be above" in refused.output
     again = run("show", target, "--out", cluster.with_name("again"))
     assert again.exit_code == 0 and said[0] in again.stdout
 

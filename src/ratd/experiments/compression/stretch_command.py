@@ -8,6 +8,7 @@ import click
 import numpy as np
 
 from ratd.aggregates.strength import TENSILE_FACTOR, tensile_strength_tatsuuma2019
+from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.command import (
     OF_STARTS,
@@ -63,7 +64,10 @@ def command(file, material, unit, starts, out, phi, strain_rate, axes, unload):
             begun = time.monotonic()
             return lambda phi, value, to_go: progress(0.5 * half + 0.5 * part_done(begun, to_go))
 
-        pressed = compress(grain, strain_rate, phi, snapshots=(), checkpoint=checkpoint, progress=told(0))
+        try:
+            pressed = compress(grain, strain_rate, phi, snapshots=(), checkpoint=checkpoint, progress=told(0))
+        except InputError as error:
+            raise InputError(str(error).replace("until_phi is", "--phi is")) from None
         how = {"axes": axes, "unload": unload, "checkpoint": f"{checkpoint}.stretch", "progress": told(1)}
         return stretched_row(stretch(pressed, strain_rate, **how))
 
