@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import norm
 
 from pictures_alike import unlike
 from ratd.experiments.collision import document_plan as page
@@ -19,17 +20,21 @@ from ratd.experiments.collision.document import (
     _by_v_frag,
     _calibrated,
     _exponents,
+    _on_all_three,
     _same_collisions,
     values,
 )
 from ratd.experiments.collision.document_samples import (
+    at_own_v_frag,
     by_sample,
     chance_of_change,
     halved,
     largest,
+    together,
     with_and_without,
 )
 from ratd.experiments.collision.document_texts import with_error
+from ratd.experiments.collision.printed import PRINTED_THRESHOLDS
 from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
 from ratd.pipeline import io
@@ -226,10 +231,46 @@ def test_half_the_step_is_told_by_the_same_collisions():
     ]
     found = halved(pd.DataFrame(rows))
     assert found["halved n mrn100"] == "4" and float(found["halved X mrn100"].split(" ± ")[0]) == pytest.approx(-0.1)
-    assert float(found["halved N_s mrn100"].split(" ± ")[0]) == 0.0 and found["halved chance mrn100"] == "1"
+    assert float(found["halved N_s mrn100"].split(" ± ")[0]) == 0.0 and found["halved chance N_s mrn100"] == "1"
+    # X of 0.9, 0.45 and 0.4, less 0.1 at 15 and 20 m/s: it never falls through 0.15
+    assert found["halved v_frag mrn100"] == "nan" and found["halved chance together"] == "1"
     # means of two samples that are two errors from 0; with one degree of freedom t is a tangent
     pairs = pd.DataFrame({"sample": [1, 1, 2], "change": [0.0, 0.2, 0.3]})
     assert chance_of_change(pairs) == pytest.approx(1.0 - 2.0 / np.pi * np.arctan(2.0))
+
+
+def test_tests_that_agree_are_surer_together():
+    """1.96 standard deviations each: four make 3.92, and those of other sign cancel."""
+    assert together([(0.1, 0.05)]) == pytest.approx(0.05)
+    assert together([(0.1, 0.05)] * 4) == pytest.approx(2.0 * norm.sf(2.0 * norm.isf(0.025)))
+    assert together([(0.1, 0.05), (-0.3, 0.05)]) == pytest.approx(1.0)
+
+
+def test_what_a_cluster_is_at_its_own_fragmentation_velocity():
+    rows = [
+        dict(
+            law="velocity", cluster="mrn", impact_parameter=0.0, velocity=v, sample=sample, N_s=v / 40 + off, n_pieces=v
+        )
+        for v in (20.0, 30.0)
+        for sample, off in ((1, -0.01), (2, 0.01))
+    ]
+    limits = pd.DataFrame([dict(law="velocity", cluster="mrn", impact_parameter=0.0, velocity=26.0)])
+    found = at_own_v_frag(pd.DataFrame(rows), limits, ("mrn", "353nm"))
+    assert found == {"own N_s mrn": "0.65 ± 0.01", "own n_pieces mrn": "26"}
+
+
+def test_the_damping_time_that_fits_all_printed_velocities_is_found():
+    """Powers of A that meet the printed velocities at 1.3 ns, all three."""
+    rows = [
+        dict(
+            law=f"law {time}", cluster=f"{radius * 1e9:.0f}nm", friction="velocity", damping_time=time * 1e-9,
+            impact_parameter=0.0, surface_energy=0.025, velocity=printed * (time / 1.3) ** power, error=0.1,
+        )
+        for (radius, printed), power in zip(PRINTED_THRESHOLDS.items(), (0.5, 0.6, 0.7), strict=True)
+        for time in (0.5, 1.0, 2.0)
+    ]  # fmt: skip
+    found = _on_all_three(pd.DataFrame(rows))
+    assert found["A common"] == "1.3" and found["common off"] == "0 %" and found["common 570nm"] == "12.5"
 
 
 def test_a_sample_is_told_with_its_own_moments(tables):

@@ -1,6 +1,7 @@
 """docs/collision.md: the values of its slots, from docs/collision/data; `.claims` has what its sentences say."""
 
 import numpy as np
+from scipy.stats import ttest_ind
 
 from ratd.aggregates.mrn import SMALLEST, moment_of_length
 from ratd.base.materials import MATERIALS
@@ -9,6 +10,7 @@ from ratd.base.units import NM
 from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.document_plan import figure_settings
 from ratd.experiments.collision.document_samples import (
+    at_own_v_frag,
     by_sample,
     halved,
     largest,
@@ -90,7 +92,8 @@ def values(table, thresholds, likeness):
     found |= by_sample(table, "velocity", "mrn") | with_and_without(table, COLUMNS) | largest(table)
     found |= samples_of_the_law() | of_same_samples(table) | _one_pair(table) | _same_collisions(table)
     found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants(table)
-    found |= _recipe(thresholds) | _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
+    found |= _recipe(table, thresholds) | at_own_v_frag(table, thresholds, ("mrn", "353nm")) | _on_all_three(thresholds)
+    found |= _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
     found |= halved(table) | _late(table) | _shorter(table, "velocity", "mrn")
     found |= {
         "collisions": str((~table["law"].isin(SAME)).sum()),
@@ -143,6 +146,30 @@ def _calibrated(thresholds):
     return found
 
 
+def _on_all_three(thresholds):
+    """``A common``: damping time [ns] that fits all three printed v_frag best; ``common 570nm``: v_frag there [m/s].
+
+    v_frag of each radius is a power of the damping time, fitted to all that were tried, by their errors; ``common
+    off``: by how much the worst of the three is off.
+    """
+    own = of_same_energy(head_on(thresholds)).dropna(subset=["velocity", "error"])
+    own = own[(own["friction"] == "velocity") & (own["error"] > 0.0)]
+    lines, printed = {}, {}
+    for radius, speed in PRINTED_THRESHOLDS.items():
+        name = f"{radius / NM:.0f}nm"
+        part = own[own["cluster"] == name]
+        if len(part) < 2:
+            return {}
+        weights = (part["velocity"] / part["error"]).to_numpy()
+        time, level = (np.log(part[column].to_numpy()) for column in ("damping_time", "velocity"))
+        lines[name], printed[name] = np.polyfit(time, level, 1, w=weights), np.log(speed)
+    slopes, heights = np.array(list(lines.values())).T
+    best = np.sum(slopes * (np.array(list(printed.values())) - heights)) / np.sum(slopes**2)
+    found = {f"common {name}": f"{np.exp(np.polyval(line, best)):.1f}" for name, line in lines.items()}
+    off = max(abs(np.expm1(np.polyval(line, best) - printed[name])) for name, line in lines.items())
+    return found | {"A common": f"{1e9 * np.exp(best):.1f}", "common off": f"{100.0 * off:.0f} %"}
+
+
 def _one_pair(table):
     """Values of single rotations of the first sample: ``first X velocity mrn 30``, ``shown ...`` for that of Fig. 4."""
     central = table[(table["impact_parameter"] == 0) & (table["sample"] == 1)]
@@ -154,10 +181,17 @@ def _one_pair(table):
     return found
 
 
-def _recipe(thresholds):
+def _v_frag_of_samples(table):
+    """v_frag [m/s] of each sample of MRN and of 0.353 um, central collisions with rate friction, (k,) arrays."""
+    central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
+    return [fragmentation_velocities(central[central["cluster"] == name]) for name in ("mrn", "353nm")]
+
+
+def _recipe(table, thresholds):
     """``too low``: by how much of v_frag of MRN that of the recipe's 0.353 um is too low, rate friction.
 
-    ``too low speed``: the same in m/s, and ``too low errors`` over its error.
+    ``too low speed``: the same in m/s, and ``too low errors`` over its error; ``too low chance``: in one case of how
+    many two sets of samples whose v_frag are alike lie so far apart (Welch's t).
     """
     own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
     if not {"mrn", "353nm"} <= set(own.index):
@@ -165,7 +199,9 @@ def _recipe(thresholds):
     (true, error), (equal, other) = (own.loc[name, ["velocity", "error"]] for name in ("mrn", "353nm"))
     ratio, spread = quotient((equal, other), (true, error))
     gap, wide = true - equal, np.hypot(error, other)
+    chance = ttest_ind(*_v_frag_of_samples(table), equal_var=False).pvalue
     return {
+        "too low chance": f"{1.0 / chance:.0f}",
         "too low": f"{100 * (1 - ratio):.0f} ± {100 * spread:.0f} %",
         "too low speed": with_error(gap, wide, 1),
         "too low errors": f"{gap / wide:.1f}",
@@ -178,7 +214,6 @@ def _by_v_frag(table, thresholds):
     v_frag of equal spheres is linear between the logarithms of both; one error, of both, to either side. ``by sample
     v_frag velocity mrn`` and ``... 353nm``: v_frag [m/s] of each sample.
     """
-    central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
     own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
     names = [name for name in own.index if name.removesuffix("nm").isdigit()]
     equal = own.loc[names].dropna(subset="velocity").sort_values("velocity")
@@ -196,8 +231,7 @@ def _by_v_frag(table, thresholds):
         drawn = [radius(true + error * rng.normal(), speed + spread * rng.normal(size=len(speed))) for _ in range(2000)]
         low, high = np.quantile(drawn, [0.16, 0.84])
         found["radius velocity mrn v_frag"] = f"{radius(true, speed):.0f} ({low:.0f}–{high:.0f})"
-    for name in ("mrn", "353nm"):
-        each = fragmentation_velocities(central[central["cluster"] == name])
+    for name, each in zip(("mrn", "353nm"), _v_frag_of_samples(table), strict=True):
         found[f"by sample v_frag velocity {name}"] = ", ".join(f"{velocity:.1f}" for velocity in each)
     return found
 

@@ -1,16 +1,18 @@
 """Slots of docs/collision.md that set samples or single collisions beside each other, and what samples are."""
 
 import numpy as np
+from scipy.stats import norm as normal
 from scipy.stats import t as student
 
 from ratd.aggregates.mrn import free_samples, mrn, sample_length, sample_moment
 from ratd.base.statistics import mean_of
 from ratd.base.units import NM
 from ratd.experiments.collision.document_texts import with_error
-from ratd.experiments.collision.fragmentation import mean_and_error
+from ratd.experiments.collision.fragmentation import fragmentation_velocity, mean_and_error, means
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 
 __all__ = [
+    "at_own_v_frag",
     "by_sample",
     "chance_of_change",
     "change_by_half",
@@ -18,6 +20,7 @@ __all__ = [
     "largest",
     "of_same_samples",
     "samples_of_the_law",
+    "together",
     "with_and_without",
 ]
 
@@ -71,17 +74,57 @@ def halved(table):
     """What half the step changes in the same collisions: mean, and its error over samples, else over pairs.
 
     ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs; ``halved scatter CLUSTER``:
-    standard deviation of the change of N_s between them; ``halved chance CLUSTER``: in one case of how many chance
-    alone makes so great a mean change of N_s, see `chance_of_change`.
+    standard deviation of the change of N_s between them; ``halved chance COLUMN CLUSTER``: in one case of how many
+    chance alone makes so great a mean change, see `chance_of_change`; ``halved chance together``: the same of N_s of
+    all clusters (`together`); ``halved v_frag CLUSTER``: v_frag [m/s] if X is changed so wherever pairs were done.
     """
-    found = {}
-    for cluster in table.loc[table["law"] == "half_step", "cluster"].unique():
+    found, chances = {}, []
+    for cluster in sorted(table.loc[table["law"] == "half_step", "cluster"].unique()):
         for column in ("X", "N_s"):
             pairs = change_by_half(table, column, cluster)
-            found[f"halved {column} {cluster}"] = with_error(*mean_and_error(pairs, "change"))
+            mean, error = mean_and_error(pairs, "change")
+            chance = chance_of_change(pairs)
+            found[f"halved {column} {cluster}"] = with_error(mean, error)
+            found[f"halved chance {column} {cluster}"] = f"{1.0 / chance:.0f}"
+            if column == "X":
+                own = table[(table["law"] == "velocity") & (table["cluster"] == cluster)]
+                own = own[own["impact_parameter"] == 0]
+                near = own["velocity"].between(pairs["velocity"].min(), pairs["velocity"].max())
+                shifted = own.assign(X=own["X"] + np.where(near, mean, 0.0))
+                found[f"halved v_frag {cluster}"] = f"{fragmentation_velocity(shifted, samples=2)['velocity']:.1f}"
+        chances.append((mean, chance))
         found[f"halved n {cluster}"] = str(len(pairs))
         found[f"halved scatter {cluster}"] = f"{pairs['change'].std(ddof=1):.2f}"
-        found[f"halved chance {cluster}"] = f"{1.0 / chance_of_change(pairs):.0f}"
+    if chances:
+        found["halved chance together"] = f"{1.0 / together(chances):.0f}"
+    return found
+
+
+def together(chances):
+    """Probability, both sides, that independent tests come out so by chance, all counted alike (Stouffer 1949).
+
+    Parameters
+    ----------
+    chances : list of tuple of float
+        Of each test what is found, for its sign, and its probability of both sides.
+    """
+    z = [np.sign(value) * normal.isf(0.5 * chance) for value, chance in chances]
+    return float(2.0 * normal.sf(abs(np.sum(z)) / np.sqrt(len(z))))
+
+
+def at_own_v_frag(table, thresholds, clusters):
+    """``own N_s CLUSTER`` and ``own n_pieces CLUSTER``: at the v_frag of each, straight between velocities."""
+    central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
+    own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
+    found = {}
+    for cluster in clusters:
+        part = central[central["cluster"] == cluster]
+        if cluster not in own.index or part.empty:
+            continue
+        for column, digits in (("N_s", 2), ("n_pieces", 0)):
+            velocity, mean, error = means(part, column)
+            at, spread = (np.interp(own.loc[cluster, "velocity"], velocity, values) for values in (mean, error))
+            found[f"own {column} {cluster}"] = with_error(at, spread, digits)
     return found
 
 
