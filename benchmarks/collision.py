@@ -56,7 +56,7 @@ def measure(out, *, number, steps, duration, about, say):
     cluster = build(mrn(number, SEED, **limits))
     rows = [{"what": f"building a cluster of {number} MRN spheres", "seconds": time.perf_counter() - begun}]
     for code, friction, run in (("ratd", "velocity", _ratd), ("ratd", "none", _ratd), ("LAMMPS", "none", _lammps)):
-        law = dmt(friction=friction)
+        law = dmt(viscous_time=0.5e-9, friction=friction)
         seconds, made, contacts = run(at_rest(cluster, law), law, steps)
         ns = 1e9 * seconds / made / contacts
         row = {"what": "MRN", "code": code, "friction": friction, "ns_per_contact_step": ns, "steps": made}

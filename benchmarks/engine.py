@@ -95,7 +95,7 @@ def boxed(grain):
 
 def other_law(grain):
     """A grain at rest with the law of Derjaguin, Muller & Toporov and friction of limited force, as a `Body`."""
-    law, box = dmt(), open_space()
+    law, box = dmt(viscous_time=0.5e-9), open_space()
     return Body(relax(grain, law=law, timestep_factor=TIMESTEP_FACTOR), law, free(), box)
 
 

@@ -26,7 +26,7 @@ def squeeze(position, radius, box, law=CONSTANT, **options):
 
 @pytest.mark.parametrize(
     ("law", "theirs"),
-    [(CONSTANT, JKR("constant")), (jkr(), JKR()), (dmt(friction="spring"), DMT(0.5e-9))],
+    [(CONSTANT, JKR("constant")), (jkr(), JKR()), (dmt(viscous_time=0.5e-9, friction="spring"), DMT(0.5e-9))],
     ids=["constant", "viscoelastic", "dmt"],
 )
 @pytest.mark.parametrize("side", [1, 2, 3])

@@ -22,8 +22,8 @@ N = 16
 LAWS = {
     "jkr": jkr(),
     "jkr-dmt": jkr(normal_force="DMT"),
-    "dmt-spring": dmt(friction="spring"),
-    "dmt-velocity": dmt(friction="velocity"),
+    "dmt-spring": dmt(viscous_time=0.5e-9, friction="spring"),
+    "dmt-velocity": dmt(viscous_time=0.5e-9, friction="velocity"),
 }
 SLOW, FAST = (rotating("prescribed", omega_1=3e8, angular_acceleration=a) for a in (1e17, 3e18))
 EXPLICIT = leapfrog()

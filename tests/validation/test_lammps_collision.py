@@ -26,7 +26,7 @@ def cluster():
 
 @pytest.mark.parametrize("speed", [3.0, 12.0])
 def test_two_clusters_without_friction(cluster, speed):
-    law = ratd.laws.dmt(friction="none")
+    law = ratd.laws.dmt(viscous_time=0.5e-9, friction="none")
     run = collide(
         cluster, cluster, speed, 0.2, seed=5, law=law, duration=TIME, timestep=STEP, records=1, relaxed=True,
         snapshot_every=0,
