@@ -1,6 +1,9 @@
 """Order of the test files."""
 
-LONGEST = ("test_pipeline.py", "test_benchmarks.py", "test_tutorial.py", "test_slurm.py")
+LONGEST = (
+    "test_pipeline.py", "test_benchmarks.py", "test_tutorial.py", "test_slurm.py", "test_document.py", "test_plan.py",
+    "test_collision.py", "test_compression.py",
+)  # fmt: skip
 """Started first, so that no worker is left alone with it at the end. The first two need other parts of the time loop:
 two workers do not compile the same."""
 

@@ -164,9 +164,12 @@ def mean_and_error(part, column):
     Where there are several samples of a cluster the mean is that of their means, and the error is that over samples:
     rotations of one sample are no draws of the law of the radii. A table without samples has one.
     """
-    own = part[part[column].notna()]
-    by_sample = own.groupby(_samples(own))[column].mean()
-    single = by_sample if len(by_sample) > 1 else own[column]
+    values = part[column].to_numpy(dtype=float)
+    there = np.isfinite(values)
+    single = values[there]
+    _, place, count = np.unique(_samples(part)[there], return_inverse=True, return_counts=True)
+    if len(count) > 1:
+        single = np.bincount(place, single) / count
     mean = single.mean() if len(single) else np.nan
     return mean, single.std(ddof=1) / np.sqrt(len(single)) if len(single) > 1 else np.nan
 
