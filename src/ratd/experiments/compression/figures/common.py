@@ -163,7 +163,11 @@ def pressures(tables, labels, title, *, alone=False):
     figure, above, below = two_panels(title)
     draw_curves(above, below, tables, labels, alone=alone)
     _line_and_left_end(above, tables)
-    return finish(figure, above, below)
+    finish(figure, above, below)
+    if alone:
+        # the loosest clusters press least
+        below.set_ylim(bottom=0.03)
+    return figure
 
 
 def pressures_over(tables, labels, title, which, quotient, limits):
