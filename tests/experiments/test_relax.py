@@ -78,3 +78,16 @@ def test_spheres_that_come_to_touch_as_others_are_pressed_are_in_contact():
     top = np.sqrt((2 * radius) ** 2 - (apart / 2) ** 2)
     three = Grain([[0.0, 0.0, 0.0], [apart, 0.0, 0.0], [apart / 2, top, 0.0]], [radius] * 3, "q-S")
     assert three.n_contacts in (2, 3) and seated(three).n_contacts == relax(three).counter[CONTACTS] == 3
+
+
+def test_touching_spheres_of_very_unequal_radii_come_to_rest():
+    """By one factor a sphere of 1 um would be pressed into one of 20 nm by ten times its rest."""
+    grain = Grain([[0, 0, 0], [1.02e-6, 0, 0], [1.06e-6, 0, 0]], [1e-6, 2e-8, 2e-8], "ice")
+    assert gaps_of(seated(grain).position, grain) == pytest.approx([-1.0, -1.0])
+    assert relax(grain).counter[LARGEST_MONOMERS] == 3
+    wide = touching(1, width=1.3)
+    assert wide.radius.max() > 30.0 * wide.radius.min()
+    # a tree: all of its contacts are at rest, whatever their spheres
+    np.testing.assert_allclose(gaps_of(seated(wide).position, wide), -1.0, rtol=1e-6)
+    for law in (ratd.laws.jkr(), ratd.laws.dmt()):
+        assert relax(wide, law=law).counter[LARGEST_MONOMERS] == 60

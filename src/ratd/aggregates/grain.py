@@ -4,6 +4,8 @@ import math
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order
 
 from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
@@ -271,11 +273,47 @@ def seated(grain):
     -------
     Grain
         The same one; where more than half of the contacts are pressed by less than `SEATED` of their rest, one that is
-        smaller by one factor, so that half of them are pressed to it. Spheres that are near may touch then, too.
+        smaller by one factor, so that half of them are pressed to it. Spheres that are near may touch then, too. Where
+        radii differ so much that some contact would be pressed by more than `OVERLAP_TOLERANCE`, one in which each
+        sphere is brought to rest against the one before it, along a tree of contacts (`_seated_along_tree`).
     """
     if np.median(_nearer(grain, SEATED)) <= 0.0:
         return grain
-    return _smaller(grain, np.median(_nearer(grain, 1.0)))
+    nearer = _nearer(grain, 1.0)
+    part = np.median(nearer)
+    distance, delta_0 = _lengths(grain)
+    # pressed by 1 with its own part, by more with a greater one
+    deepest = np.max(1.0 + (part - nearer) * distance / delta_0)
+    return _smaller(grain, part) if deepest <= OVERLAP_TOLERANCE else _seated_along_tree(grain)
+
+
+def _seated_along_tree(grain):
+    """The aggregate in which each contact of a tree that holds all spheres together is at rest.
+
+    Every sphere moves, with all that follow it, along the line to the one before it. In an aggregate that is a tree all
+    contacts are at rest then; others, which close a ring, are off by about as much as the first ones moved.
+    """
+    i, j = grain.contacts.T
+    n = len(grain.radius)
+    joined = coo_array((np.ones(len(i)), (i, j)), shape=(n, n)).tocsr()
+    order, before = breadth_first_order(joined, np.argmax(grain.radius), directed=False)
+    delta_0 = {frozenset(pair): value for pair, value in zip(grain.contacts.tolist(), _lengths(grain)[1], strict=True)}
+    moved = np.zeros_like(grain.position)
+    for sphere in order[1:]:
+        other = before[sphere]
+        way = grain.position[other] - grain.position[sphere]
+        length = np.linalg.norm(way)
+        wanted = grain.radius[sphere] + grain.radius[other] - delta_0[frozenset((int(sphere), int(other)))]
+        moved[sphere] = moved[other] + (length - wanted) / length * way
+    return _with_positions(grain, grain.position + moved)
+
+
+def _lengths(grain):
+    """Distance of the centres of each contact and its compression at rest [m], (k,) each."""
+    i, j = grain.contacts.T
+    constants = grain.material.surface_energy, grain.material.reduced_modulus
+    distance = np.linalg.norm(grain.position[i] - grain.position[j], axis=1)
+    return distance, equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
 
 
 def _nearer(grain, by):
@@ -289,5 +327,10 @@ def _nearer(grain, by):
 
 def _smaller(grain, part):
     """The aggregate with all positions nearer to each other by a part."""
+    return _with_positions(grain, (1.0 - part) * grain.position)
+
+
+def _with_positions(grain, position):
+    """The aggregate with its spheres elsewhere."""
     about = {"type": grain.type, "a_eff": grain.a_eff, "seed": grain.seed}
-    return Grain((1.0 - part) * grain.position, grain.radius, grain.material, **about)
+    return Grain(position, grain.radius, grain.material, **about)
