@@ -85,3 +85,25 @@ def test_the_page_and_its_figures_are_those_of_the_data(tmp_path):
 def test_collect_names_the_table_that_is_missing(tmp_path):
     with pytest.raises(FileError, match="quasi_static.csv: is missing; `snakemake --cores 2"):
         quasi_static_document.collect(tmp_path, tmp_path / "data")
+
+
+def test_what_the_answer_tells_of_fluffy_grains_is_what_the_table_has():
+    """Means of BA grains, one by one, from the committed rows."""
+    table, looks = (
+        pd.read_csv(ROOT / quasi_static_document.DATA / f"{check}.csv") for check in ("quasi_static", "remnant")
+    )
+    found = quasi_static_document.findings(table, looks)
+    table = table.assign(a_eff=(table["a_eff"] * 1e9).round())
+    table = table[(table["type"] == "BA") & (table["a_eff"] == 300)]
+    key = ["material", "a_eff", "seed"]
+    own = table[table["vary"] == "production"].drop_duplicates(key).set_index(key)
+
+    def logs(vary, value, mark):
+        part = table[(table["vary"] == vary) & (table["value"] == value)].drop_duplicates(key).set_index(key)
+        return np.log(part[mark] / own[mark]).dropna()
+
+    pace = logs("pace", 0.005, "omega_disr")
+    assert found["mean hard pace 0.005 omega_disr"].value == pytest.approx(np.exp(pace.mean()))
+    assert found["torque hard"].value == pytest.approx(np.exp(logs("drive", 1.0, "omega_mass_75").median()), rel=1e-3)
+    moved = logs("moved", 1.0, "omega_mass_75")
+    assert 0.0 < found["moved hard"] < 1.0 and len(moved) > 5

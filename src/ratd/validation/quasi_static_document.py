@@ -61,6 +61,10 @@ SEEN = np.radians(1.0)
 OF_SCHEME = ("stretch", "pace", "drag", "longest", "displacement")
 STEADY = (*(pair for pair in SHOWN if pair[0] in OF_SCHEME), ("stretch", 5e-15), ("unrest", 0.005))
 """Numbers of the scheme, on which the marks must not depend."""
+EARLIER = 0.05
+"""Part by which a first loss that is earlier than ours is told."""
+EARLY = 0.7
+"""Part of the cut bound below which `python -m benchmarks profile` counts work."""
 ENOUGH = 5
 """Grains of a class whose median has an error; of three a bootstrap gives none."""
 
@@ -106,7 +110,7 @@ def findings(table, looks):
     own = table[table["vary"] == PRODUCTION].drop_duplicates(GRAIN)
     values = {
         "grains": len(own),
-        "runs": len(table),
+        "runs": len(table.drop_duplicates([*GRAIN, "vary", "value"])),
         "failed": int(table["outcome"].str.startswith("failed").sum()),
         "smaller_steps": int((table["smaller_steps"] > 0).sum()),
     }
@@ -120,7 +124,10 @@ def findings(table, looks):
     table = table.assign(size_class=size_class)
     of_scheme = table[["vary", "value"]].apply(tuple, axis=1).isin(STEADY) | (table["vary"] == PRODUCTION)
     every_class = shifts(table[of_scheme], by=("type", "size_class"))
-    together = shifts(table[of_scheme], marks=("omega_mass_75",), by=("size_class",))
+    # where all three types were run: a pool without one of them says nothing of all
+    types = table.groupby(["vary", "value", "size_class"], dropna=False, observed=True)["type"].transform("nunique")
+    all_types = of_scheme & ((types == len(TYPES)) | (table["vary"] == PRODUCTION))
+    together = shifts(table[all_types], marks=("omega_mass_75",), by=("size_class",))
     values["together"] = (together["median"] - 1.0).abs().max()
     values["together known"] = together["error"].max()
     known = (every_class["error"] < KNOWN) & (every_class["n"] >= ENOUGH)
@@ -134,7 +141,10 @@ def findings(table, looks):
     unsure = every_class[(every_class["mark"] == "omega_mass_75") & ~known]
     values["few"] = int((unsure["n"] < ENOUGH).sum())
     farthest = unsure.loc[(unsure["median"] - 1.0).abs().idxmax()]
-    values["unsure"] = Measured(farthest["median"] - 1.0, farthest["error"])
+    three = _paired(table[table["size_class"] == farthest["size_class"]], own, farthest["vary"], farthest["value"])
+    three = three[three["type"] == farthest["type"]]
+    off = np.sort((three["omega_mass_75"] / three["omega_mass_75_own"] - 1.0).dropna())
+    values["unsure each"] = ", ".join(f"{100.0 * each:.0f} %".replace("-", "−") for each in off)
     ba = _paired(table[is_hard(table)], own, "stretch", 1e-14)
     values["BA differ"] = ((ba["omega_mass_75"] / ba["omega_mass_75_own"] - 1.0).abs() > 0.01).mean()
     values["all classes"] = int((every_class["mark"] == "omega_mass_75").sum())
@@ -166,6 +176,8 @@ def against(now, before):
     values = {"ensemble.grains": len(now), "ensemble.pairs": len(pairs)}
     values["ensemble.unfinished"] = int((now["end_reason"] != "one contact left").sum())
     for kind in TYPES:
+        early = now.loc[now["type"] == kind, ["omega_first_loss", "cut_bound"]]
+        values[f"ensemble.{kind} early"] = (early["omega_first_loss"] < EARLY * early["cut_bound"]).mean()
         for name, (low, high) in SIZES.items():
             part = pairs[(pairs["type"] == kind) & pairs["a_eff"].between(low * NM, high * NM)]
             for mark in MARKS:
@@ -185,7 +197,7 @@ def _steps(own):
     for kind, part in own.groupby("type"):
         large = part[part["a_eff"] > 400 * NM]
         values[f"steps {kind}"] = f"{large['steps'].median():,.0f}".replace(",", " ")
-        values[f"steps until quarter {kind}"] = (part["steps_mass_75"] / part["steps"]).median()
+        values[f"steps until quarter {kind}"] = (large["steps_mass_75"] / large["steps"]).median()
     return values
 
 
@@ -201,7 +213,11 @@ def is_hard(table):
 
 
 def _means(table, own):
-    """Geometric means of all types together, and the farthest that a number of the scheme moves them."""
+    """Geometric means of all types together, and the farthest that a number of the scheme moves them.
+
+    ``mean farthest MARK`` of all types together, ``mean farthest TYPE MARK`` of one, ``mean hard VARY VALUE MARK`` of
+    BA of 300 nm.
+    """
     values, steady = {}, {mark: [] for mark in MARKS}
     for vary, value in (*SHOWN, ("epsilon", 0.004)):
         pairs = _paired(table, own, vary, value)
@@ -211,9 +227,21 @@ def _means(table, own):
             if (vary, value) in STEADY:
                 steady[mark].append(found)
         values[f"mean {vary} {value:g} grains"] = len(pairs)
-    for mark, means in steady.items():
+    for vary, value in STEADY:
+        pairs = _paired(table, own, vary, value)
+        hard = pairs[(pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)]
+        for mark in MARKS:
+            ratio = pairs[mark] / pairs[f"{mark}_own"]
+            for kind in TYPES:
+                part = ratio[(pairs["type"] == kind) & ratio.notna()]
+                if len(part) >= ENOUGH:
+                    steady.setdefault(f"{kind} {mark}", []).append(geometric_mean(part))
+            found = (hard[mark] / hard[f"{mark}_own"]).dropna()
+            if len(found) >= ENOUGH:
+                values[f"mean hard {vary} {value:g} {mark}"] = geometric_mean(found)
+    for name, means in steady.items():
         farthest = max(means, key=lambda found: abs(found.value - 1.0))
-        values[f"mean farthest {mark}"] = Measured(abs(farthest.value - 1.0), farthest.error)
+        values[f"mean farthest {name}"] = Measured(abs(farthest.value - 1.0), farthest.error)
     return values
 
 
@@ -269,12 +297,15 @@ def _torque(table, own):
     yielding = pairs["axis_ratio_mass_75"] / pairs["axis_ratio_mass_75_own"]
     found = median(omega)
     values["torque change"] = Measured(abs(found.value - 1.0), found.error)
+    hard = (pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)
+    values["torque hard"] = median(omega[hard])
     values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
     values["torque higher"] = (omega > 1.02).mean()
     values["torque stretched"] = _text(median_of(yielding[omega > 1.02]))
     values["torque lower"] = (omega < 0.98).mean()
     chaos = _paired(table, own, "moved", 1.0)
     moved = chaos["omega_mass_75"] / chaos["omega_mass_75_own"]
+    values["moved hard"] = ((moved[is_hard(chaos)] - 1.0).abs() > 0.01).mean()
     values["moved differs"] = ((moved - 1.0).abs() > 0.02).mean()
     return values
 
@@ -290,6 +321,11 @@ def _slow(table, own):
         off = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
         values[f"{vary} {value:g} range"] = f"{off.min():.2f} to {off.max():.2f}"
         values |= {f"{vary} {value:g} {kind}": median(part) for kind, part in off.groupby(pairs["type"])}
+        first = (pairs["omega_first_loss"] / pairs["omega_first_loss_own"])[pairs["type"] == "BAM2"]
+        lower = 1.0 - first[first < 1.0 - EARLIER]
+        values[f"{vary} {value:g} BAM2 first"] = f"{len(lower)} of {len(first)}"
+        if len(lower):
+            values[f"{vary} {value:g} BAM2 earlier"] = f"{100.0 * lower.min():.0f} to {100.0 * lower.max():.0f} %"
         values[f"{vary} {value:g} steps"] = (pairs["steps"] / pairs["steps_own"]).median()
     return values
 
