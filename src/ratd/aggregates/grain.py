@@ -281,9 +281,10 @@ def seated(grain):
         return grain
     nearer = _nearer(grain, 1.0)
     part = np.median(nearer)
-    distance, delta_0 = _lengths(grain)
+    i, j = grain.contacts.T
+    distance = np.linalg.norm(grain.position[i] - grain.position[j], axis=1)
     # pressed by 1 with its own part, by more with a greater one
-    deepest = np.max(1.0 + (part - nearer) * distance / delta_0)
+    deepest = np.max(1.0 + (part - nearer) * distance / _compression(grain.radius[i], grain.radius[j], grain.material))
     return _smaller(grain, part) if deepest <= OVERLAP_TOLERANCE else _seated_along_tree(grain)
 
 
@@ -297,23 +298,15 @@ def _seated_along_tree(grain):
     n = len(grain.radius)
     joined = coo_array((np.ones(len(i)), (i, j)), shape=(n, n)).tocsr()
     order, before = breadth_first_order(joined, np.argmax(grain.radius), directed=False)
-    delta_0 = {frozenset(pair): value for pair, value in zip(grain.contacts.tolist(), _lengths(grain)[1], strict=True)}
     moved = np.zeros_like(grain.position)
     for sphere in order[1:]:
         other = before[sphere]
         way = grain.position[other] - grain.position[sphere]
         length = np.linalg.norm(way)
-        wanted = grain.radius[sphere] + grain.radius[other] - delta_0[frozenset((int(sphere), int(other)))]
+        pair = grain.radius[sphere], grain.radius[other]
+        wanted = sum(pair) - _compression(*pair, grain.material)
         moved[sphere] = moved[other] + (length - wanted) / length * way
     return _with_positions(grain, grain.position + moved)
-
-
-def _lengths(grain):
-    """Distance of the centres of each contact and its compression at rest [m], (k,) each."""
-    i, j = grain.contacts.T
-    constants = grain.material.surface_energy, grain.material.reduced_modulus
-    distance = np.linalg.norm(grain.position[i] - grain.position[j], axis=1)
-    return distance, equilibrium_compression(reduced_radius(grain.radius[i], grain.radius[j]), *constants)
 
 
 def _nearer(grain, by):

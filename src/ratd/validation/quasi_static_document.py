@@ -212,6 +212,11 @@ def is_hard(table):
     return (table["type"] == "BA") & (table["a_eff"] > 250 * NM)
 
 
+def is_fluffy(table):
+    """Whether grains are BA of 300 nm, of which there are many, (n,) of bool."""
+    return (table["type"] == "BA") & np.isclose(table["a_eff"], 300 * NM)
+
+
 def _means(table, own):
     """Geometric means of all types together, and the farthest that a number of the scheme moves them.
 
@@ -229,7 +234,7 @@ def _means(table, own):
         values[f"mean {vary} {value:g} grains"] = len(pairs)
     for vary, value in STEADY:
         pairs = _paired(table, own, vary, value)
-        hard = pairs[(pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)]
+        hard = pairs[is_fluffy(pairs)]
         for mark in MARKS:
             ratio = pairs[mark] / pairs[f"{mark}_own"]
             for kind in TYPES:
@@ -271,7 +276,7 @@ def _arms(table, own):
     values = {}
     for vary, value in ARMS:
         pairs = _paired(table, own, vary, value)
-        pairs = pairs[(pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)]
+        pairs = pairs[is_fluffy(pairs)]
         for mark in ("first_loss", "mass_75"):
             ratios = pairs[f"omega_{mark}"] / pairs[f"omega_{mark}_own"]
             values[f"arms.{vary} {value:g} {mark}"] = _text(median_of(ratios))
@@ -297,7 +302,7 @@ def _torque(table, own):
     yielding = pairs["axis_ratio_mass_75"] / pairs["axis_ratio_mass_75_own"]
     found = median(omega)
     values["torque change"] = Measured(abs(found.value - 1.0), found.error)
-    hard = (pairs["type"] == "BA") & np.isclose(pairs["a_eff"], 300 * NM)
+    hard = is_fluffy(pairs)
     values["torque hard"] = median(omega[hard])
     values["torque same"] = ((omega - 1.0).abs() < 0.02).mean()
     values["torque higher"] = (omega > 1.02).mean()

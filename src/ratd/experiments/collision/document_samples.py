@@ -86,18 +86,23 @@ def halved(table):
             chance = chance_of_change(pairs)
             found[f"halved {column} {cluster}"] = with_error(mean, error)
             found[f"halved chance {column} {cluster}"] = f"{1.0 / chance:.0f}"
-            if column == "X":
-                own = table[(table["law"] == "velocity") & (table["cluster"] == cluster)]
-                own = own[own["impact_parameter"] == 0]
-                near = own["velocity"].between(pairs["velocity"].min(), pairs["velocity"].max())
-                shifted = own.assign(X=own["X"] + np.where(near, mean, 0.0))
-                found[f"halved v_frag {cluster}"] = f"{fragmentation_velocity(shifted, samples=2)['velocity']:.1f}"
-        chances.append((mean, chance))
+            if column == "N_s":
+                chances.append((mean, chance))
+        found[f"halved v_frag {cluster}"] = f"{_v_frag_by_half(table, cluster):.1f}"
         found[f"halved n {cluster}"] = str(len(pairs))
         found[f"halved scatter {cluster}"] = f"{pairs['change'].std(ddof=1):.2f}"
     if chances:
         found["halved chance together"] = f"{1.0 / together(chances):.0f}"
     return found
+
+
+def _v_frag_by_half(table, cluster):
+    """v_frag [m/s] of a cluster if half the step changes X by as much wherever it was done again."""
+    pairs = change_by_half(table, "X", cluster)
+    mean, _ = mean_and_error(pairs, "change")
+    own = table[(table["law"] == "velocity") & (table["cluster"] == cluster) & (table["impact_parameter"] == 0)]
+    near = own["velocity"].between(pairs["velocity"].min(), pairs["velocity"].max())
+    return fragmentation_velocity(own.assign(X=own["X"] + np.where(near, mean, 0.0)), samples=2)["velocity"]
 
 
 def together(chances):

@@ -105,7 +105,8 @@ def show(path, out):
         answer("phi at the greatest tension", phi, "").rstrip(),
         answer(f"pressure on {ways} at rest before the pull", pressed, "Pa"),
     ]
-    lines += [f"but {told}" for told in dict.fromkeys(told for run in found for told in doubts(run.attrs)[:1])][:1]
+    doubted = [told for run in found for told in doubts(run.attrs)]
+    lines += [f"but {told}" for told in doubted[:1]]
     figure = Path(f"{out}.png")
     save(_figure(found, expected[0], ways), figure)
     return [*lines, f"{figure} written"]

@@ -29,7 +29,7 @@ def tension(entries, spun=None):
         Grains that were spun up: ``phi``, ``strength``, S a/gamma, and ``type``, (k,) each.
     """
     figure = new_figure(
-        ONE_COLUMN, 0.95 * ONE_COLUMN, f"tensile strength of {main_pulls(entries)[1]} monomers, if not told"
+        ONE_COLUMN, 0.95 * ONE_COLUMN, f"tensile strength of {main_pulls(entries)[1]} monomers, unless told"
     )
     axes = figure.subplots()
     if spun is not None:
