@@ -205,7 +205,14 @@ def make_fragments(grains=6, exponent=1.2, seed=0):
                 monomers = rng.choice(n, size=rng.integers(2, 9), p=law)
                 mass = 0.5 * monomers / monomers.sum()
                 rows += [
-                    {"type": kind, "a_eff": a_eff, "grain": number, "fragment_n_monomers": m, "mass_fraction": part}
+                    {
+                        "type": kind,
+                        "a_eff": a_eff,
+                        "grain": number,
+                        "n_monomers": largest + 1,
+                        "fragment_n_monomers": m,
+                        "mass_fraction": part,
+                    }
                     for m, part in zip(monomers, mass, strict=True)
                 ]
                 number += 1

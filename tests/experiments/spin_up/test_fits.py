@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import (
@@ -290,6 +291,23 @@ def test_the_exponent_is_that_of_greatest_likelihood():
         assert power_law(sizes, largest, replicates=1)["exponent"] == pytest.approx(low, abs=1e-9)
 
 
+def test_each_fragment_has_the_upper_end_of_its_own_grain():
+    """One law cut off at two sizes is found and justified; taken as of one end it is steeper, and is not."""
+    rng = np.random.default_rng(8)
+    ends = np.repeat([8, 400], 1000)
+    sizes = np.concatenate([rng.choice(np.arange(1, k + 1), 1000, p=law_to(k, 0.9)) for k in (8, 400)])
+    found, common = power_law(sizes, ends), power_law(sizes, 400)
+    assert abs(found["exponent"] - 0.9) < 4 * found["error"] < 0.2 and found["probability"] > 0.05
+    assert common["exponent"] > 1.1 and common["probability"] == 0.0
+    with pytest.raises(InputError, match="a fragment has 9 monomers, but 8 is the largest possible"):
+        power_law([1, 9, 2], 8)
+
+
+def law_to(largest, exponent):
+    n = np.arange(1, largest + 1)
+    return n**-exponent / np.sum(n**-exponent)
+
+
 def test_exponents_by_type_and_class_lie_in_their_intervals():
     found = exponents(make_fragments(grains=60), replicates=100)
     assert len(found) == 9 and (found["n_grains"] == 60).all()
@@ -298,8 +316,8 @@ def test_exponents_by_type_and_class_lie_in_their_intervals():
     assert inside.sum() >= 7  # 95 % of 9 intervals
     large = found[found["size_class"] == "400 to 550 nm"]
     assert (large["high"] - large["low"] < 0.2).all() and large["exponent"].to_numpy() == pytest.approx(1.2, abs=0.1)
-    flatter = exponents(make_fragments(grains=60), largest=10**4, replicates=2)
-    assert (flatter["exponent"] > found["exponent"]).all()  # fewer large ones than there could be
+    steeper = exponents(make_fragments(grains=60).assign(n_monomers=10**4), replicates=2)
+    assert (steeper["exponent"] > found["exponent"]).all()  # fewer large ones than there could be
 
 
 def test_large_pieces_are_counted_by_the_grain():

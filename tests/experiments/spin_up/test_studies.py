@@ -171,8 +171,10 @@ def test_a_law_that_holds_in_the_mean_of_sizes_alone_is_far_off_at_each(tables):
         turned[name] = tables[name].assign(omega_mass_75=tables[name]["omega_mass_75"] * size)
     values = of_studies(tables | turned)
     n = values["equal.sizes"]
-    flatter = values["equal_30nm.BA flatter"]
+    flatter = values["equal_30nm.BA flatter omega_mass_75"]
     assert flatter.value == pytest.approx(1.0, abs=4 * flatter.error) and 0.0 < flatter.error < 0.1
+    assert abs(values["equal_30nm.BA flatter omega_disr"].value) < 0.1
+    assert values["equal.BA flatter least"].value < 0.1 < 0.9 < values["equal.BA flatter most"].value
     assert values["equal.omega_mass_75 chi2 2"] < 20.0 and values["equal.sizes chi2 2"] > 10 * n
     below, above = (
         values[f"equal_30nm.BA {size / 1e-9:.0f} nm omega_mass_75 law 2"].value for size in SIZES[:: len(SIZES) - 1]

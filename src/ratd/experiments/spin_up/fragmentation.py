@@ -122,17 +122,18 @@ def fragment_table(dataset):
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of kind "fragments".
+        Of kind "fragments"; may have more over `row`.
 
     Returns
     -------
     pandas.DataFrame
-        Columns of `COLUMNS` and `FRAGMENT_COLUMNS`; `grain`, the number of the grain; `mass_fraction`, the mass of the
-        fragment over that of the grain; `disruption` and `half`, whether it belongs to these `STAGES`; `weight` of the
-        grain, with which all cells (material, type, size) count alike.
+        Columns over `row`, those of `COLUMNS` at least, and `FRAGMENT_COLUMNS`; `grain`, the number of the grain;
+        `mass_fraction`, the mass of the fragment over that of the grain; `disruption` and `half`, whether it belongs to
+        these `STAGES`; `weight` of the grain, with which all cells (material, type, size) count alike.
     """
     size = dataset["row_size_fragment"].values
-    grains = pd.DataFrame({name: dataset[name].values for name in COLUMNS})
+    of_grains = [name for name in dataset if dataset[name].dims == ("row",) and name != "row_size_fragment"]
+    grains = pd.DataFrame({name: dataset[name].values for name in of_grains})
     grains["grain"] = np.arange(len(grains))
     grains["weight"] = equal_weights(cell_of(grains))
     table = grains.loc[grains.index.repeat(size)].reset_index(drop=True)
@@ -156,7 +157,7 @@ def spun_up_fragments(files):
     Returns
     -------
     pandas.DataFrame
-        As `fragment_table` makes it.
+        As `fragment_table` makes it, with n_monomers of the grain.
     """
     grains = pd.concat(
         [
@@ -165,6 +166,7 @@ def spun_up_fragments(files):
                     "material": file.attrs["material"],
                     "type": file.attrs["type"],
                     "grain_mass": file["initial_mass"].values,
+                    "n_monomers": file["initial_n_monomers"].values,
                     **{name: file[name].values for name in ("a_eff", "seed", "omega_disr", "mass_fraction_disr")},
                     "row_size_fragment": file["row_size_fragment"].values,
                 }
@@ -231,18 +233,15 @@ def fragment_shares(fragments, stage, seed=0):
     return pd.DataFrame(rows)
 
 
-def exponents(fragments, stage="half", largest=None, confidence=0.95, replicates=400, seed=0):
+def exponents(fragments, stage="half", confidence=0.95, replicates=400, seed=0):
     """Exponents of the sizes of fragments by type and class of size, and the number of large pieces.
 
     Parameters
     ----------
     fragments : pandas.DataFrame
-        From `fragmentation.fragment_table`.
+        From `spun_up_fragments`.
     stage : str
         One of `fragmentation.STAGES`.
-    largest : int, optional
-        Greatest possible number of monomers of a fragment; default: of each type and class that of its largest one. The
-        exponent hangs on it where it is near 1 or below.
     confidence : float
         Probability inside the intervals.
     replicates : int
@@ -253,9 +252,9 @@ def exponents(fragments, stage="half", largest=None, confidence=0.95, replicates
     -------
     pandas.DataFrame
         A row a type and class: type, size_class; exponent s of p(n) ~ n^-s over the monomers n of a fragment, from 1 to
-        `largest`, by greatest likelihood (`power_law`), with low and high, percentiles of a bootstrap over grains,
-        because the fragments of one grain are not independent; probability, low where no power law is justified;
-        large_pieces, the mean number of fragments of a grain above `LARGE` of its mass, with `_error`;
+        one less than its grain has, by greatest likelihood (`power_law`), with low and high, percentiles of a bootstrap
+        over grains, because the fragments of one grain are not independent; probability, low where no power law is
+        justified; large_pieces, the mean number of fragments of a grain above `LARGE` of its mass, with `_error`;
         n_fragments, n_grains (that lost any). Fragments of radii a with a^-3.5 have s = 11/6.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
@@ -264,13 +263,10 @@ def exponents(fragments, stage="half", largest=None, confidence=0.95, replicates
     rows = []
     for (kind, name), part in chosen.groupby(["type", size_class(chosen["a_eff"])], observed=True, sort=False):
         sizes, grain = part["fragment_n_monomers"].to_numpy(int), pd.factorize(part["grain"])[0]
-        n = np.arange(1, max(largest or 0, sizes.max()) + 1)
-        fit = power_law(sizes, len(n), seed)
-        drawn = [
-            np.bincount(sizes, weights=often[grain], minlength=len(n) + 1)[1:]
-            for often in drawn_counts(rng, replicates, grain.max() + 1)
-        ]
-        made = [_fit_power_law(counts, n)[0] for counts in drawn if np.count_nonzero(counts) > 1]
+        largest = part["n_monomers"].to_numpy(int) - 1
+        fit = power_law(sizes, largest, seed)
+        drawn = [often[grain] for often in drawn_counts(rng, replicates, grain.max() + 1)]
+        made = [_fit_power_law(*_counted(sizes, largest, often))[0] for often in drawn if np.count_nonzero(often) > 1]
         known = np.isfinite(fit["exponent"]) and grain.max() > 0
         low, high = np.quantile(made, ends) if known else (np.nan, np.nan)
         large = part.assign(large=part["mass_fraction"] > LARGE).groupby("grain")["large"].sum()
@@ -288,8 +284,8 @@ def power_law(sizes, largest, seed=0, replicates=200):
     ----------
     sizes : array_like of int
         Monomers of each fragment.
-    largest : int
-        Greatest possible number.
+    largest : int or array_like of int
+        Greatest possible number, of each fragment or of all.
     seed : int
     replicates : int
         Made-up samples of the fitted law, for the probability.
@@ -297,22 +293,34 @@ def power_law(sizes, largest, seed=0, replicates=200):
     Returns
     -------
     dict
-        exponent (greatest likelihood) and its error; distance (Kolmogorov and Smirnov); probability that a sample of
-        the law lies as far from its own fit, low where the law is not justified; n. NaN for fewer than 10 fragments.
+        exponent (greatest likelihood) and its error; distance (Kolmogorov and Smirnov) of all sizes from the sum of the
+        laws, which end at different sizes; probability that a sample of the laws lies as far from its own fit, low
+        where they are not justified; n. NaN for fewer than 10 fragments.
+
+    Raises
+    ------
+    InputError
+        If a fragment is larger than possible.
 
     References
     ----------
     Clauset, Shalizi & Newman (2009), SIAM Review 51, 661.
     """
     sizes = np.asarray(sizes, dtype=np.int64)
+    largest = np.broadcast_to(np.asarray(largest, dtype=np.int64), sizes.shape)
+    if (sizes > largest).any():
+        k = int(np.argmax(sizes > largest))
+        raise InputError(f"power_law: a fragment has {sizes[k]} monomers, but {largest[k]} is the largest possible")
     if len(sizes) < 10 or len(np.unique(sizes)) < 2:
         return {"exponent": np.nan, "error": np.nan, "distance": np.nan, "probability": np.nan, "n": len(sizes)}
-    n = np.arange(1, int(max(largest, sizes.max())) + 1)
-    counts = np.bincount(sizes, minlength=len(n) + 1)[1:]
-    exponent, distance, law = _fit_power_law(counts, n)
-    spread = np.sum(law * np.log(n) ** 2) - np.sum(law * np.log(n)) ** 2
+    exponent, distance, spread = _fit_power_law(*_counted(sizes, largest))
     rng = np.random.Generator(np.random.PCG64(seed))
-    made = [_fit_power_law(rng.multinomial(len(sizes), law), n)[1] for _ in range(replicates)]
+    # up to a size where each law ends, they differ by a factor alone
+    below = np.cumsum(np.arange(1, largest.max() + 1) ** -exponent)
+    made = [
+        _fit_power_law(*_counted(np.searchsorted(below, rng.random(len(sizes)) * below[largest - 1]) + 1, largest))[1]
+        for _ in range(replicates)
+    ]
     return {
         "exponent": exponent,
         "error": 1.0 / math.sqrt(spread * len(sizes)),
@@ -322,22 +330,32 @@ def power_law(sizes, largest, seed=0, replicates=200):
     }
 
 
-def _fit_power_law(counts, n):
-    """Exponent of greatest likelihood, distance, probabilities.
+def _counted(sizes, largest, often=None):
+    """How many fragments have n monomers, and how many could have n at most, n from 1 on."""
+    last = largest.max() + 1
+    return tuple(np.bincount(each, weights=often, minlength=last)[1:].astype(float) for each in (sizes, largest))
+
+
+def _fit_power_law(counts, ends):
+    """Exponent of greatest likelihood, distance, and variance of ln n, from what `_counted` returns.
 
     The condition is that the mean of ln n be that of the sample. It falls with the exponent, its derivative is the
     variance: Newton's steps, with bisection where one leaves the bracket.
     """
-    share, log_n = counts / counts.sum(), np.log(n)
+    log_n = np.log(np.arange(1, len(counts) + 1))
+    share, ends = counts / counts.sum(), ends / ends.sum()
     wanted = share @ log_n
     low, high = -5.0, 15.0
     exponent, step = 1.5, np.inf
     while abs(step) > 1e-12 and high - low > 1e-12:
-        law = np.exp(-exponent * log_n)
-        law /= law.sum()
-        mean = law @ log_n
+        weight = np.exp(-exponent * log_n)
+        total = np.cumsum(weight)
+        means = np.cumsum(weight * log_n) / total
+        mean = ends @ means
         low, high = (exponent, high) if mean > wanted else (low, exponent)
-        step = (mean - wanted) / (law @ (log_n - mean) ** 2)
+        spread = ends @ (np.cumsum(weight * log_n**2) / total - means**2)
+        step = (mean - wanted) / spread
         # an end of the bracket is allowed: that is where the last step of all, of 0, leads
         exponent = exponent + step if low <= exponent + step <= high else 0.5 * (low + high)
-    return exponent, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), law
+    law = weight * np.cumsum((ends / total)[::-1])[::-1]
+    return exponent, float(np.max(np.abs(np.cumsum(share) - np.cumsum(law)))), spread

@@ -22,7 +22,7 @@ from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
 from ratd.laws.contact_constants import equilibrium_contact_radius
 from ratd.laws.johnson_kendall_roberts import dissipation_time
-from ratd.base.measured import Measured, median
+from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
     "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_pairs",
@@ -170,6 +170,8 @@ def of_formulae(table):
         "formulae.contacts most": float(contacts["median"].max()),
         "formulae.single": f"{single.min():.2f} to {single.max():.2f}",
         "formulae.damping": median(ratios),
+        "formulae.damping mean": geometric_mean(ratios.dropna()),
+        "formulae.damping grains": int(ratios.count()),
         "formulae.damping single": f"{ratios.min():.2f} to {ratios.max():.2f}",
     }
     for (formula, kind), part in table[table["formula"] != OWN].groupby(["formula", "type"]):

@@ -20,6 +20,12 @@ from ratd.base.measured import Measured, median
 __all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
 
 BAM = ("BAM1", "BAM2")
+LARGE_FROM = 300
+"""Size [nm] from which on porosities are said to stagnate here."""
+STAYS = 0.05
+"""Rise of a porosity from there to the greatest size that is no rise."""
+ROUND = 1.7
+"""c/b below which most large grains of the paper are."""
 FIGURE_6 = (200, 350, 500)
 """Sizes [nm] of the grains of Fig. 6, of which the paper tells the shapes."""
 
@@ -151,6 +157,14 @@ def _shapes(letter, table):
         more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
         values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more
     stretch = (bam["axis_b_disr"] / bam["axis_a_disr"]).replace(np.inf, np.nan)
+    flat = {}
+    for kind in TYPES:
+        part = of_class(table[table["type"] == kind], "large")
+        flat[kind] = median((part["axis_b_disr"] / part["axis_a_disr"]).replace(np.inf, np.nan), cell_of(part))
+        values[f"{letter}.b/a {kind}"] = flat[kind]
+    least = min(flat["BAM1"], flat["BAM2"])
+    change = Measured(flat["BA"].value - least.value, math.hypot(flat["BA"].error, least.error))
+    values[f"{letter}.holds b/a BA"] = is_below(change, 0.0)
     return values | {
         f"{letter}.most oblate": float(stretch.max()),
         f"{letter}.holds b/a": "yes" if 4.0 < stretch.max() < 6.25 else "no",
@@ -162,21 +176,33 @@ def grown_claims(grown):
     values = {}
     for kind, (low, high) in {"BA": (0.40, 0.85), "BAM1": (0.35, 0.70), "BAM2": (0.35, 0.50)}.items():
         part = grown[grown["type"] == kind]
-        large = part[part["nm"] > 275]
+        large = part[part["nm"] > LARGE_FROM - 25]
         mean = Measured(*mean_of(large["porosity"], cell_of(large)))
         values[f"g.porosity {kind}"] = mean
         values[f"g.porosity {kind} range"] = f"{part['porosity'].min():.2f}–{part['porosity'].max():.2f}"
-        means = part.groupby("nm")["porosity"].mean()
-        values[f"g.holds porosity {kind} least"] = "yes" if low / 1.1 < means.min() < 1.1 * low else "no"
-        values[f"g.holds porosity {kind} most"] = "yes" if high / 1.1 < means.max() < 1.1 * high else "no"
-        values[f"g.porosity {kind} 550"] = float(means.iloc[-1])
-        values[f"g.porosity {kind} 50"] = float(means.iloc[0])
+        means = {
+            round(size / 1e3): Measured(*mean_of(own["porosity"], cell_of(own)))
+            for size, own in part.groupby(size_key(part["a_eff"]))
+        }
+        for end, limit, found in (("least", low, min(means.values())), ("most", high, max(means.values()))):
+            values[f"g.holds porosity {kind} {end}"] = is_within(found, limit / 1.1, 1.1 * limit)
+        for size in (min(means), max(means)):
+            values[f"g.porosity {kind} {size}"] = means[size].value
+        slope = _slope(np.log(large["a_eff"]), large["porosity"], large)
+        rise = values[f"g.porosity {kind} rise"] = Measured(
+            *(math.log(max(means) / LARGE_FROM) * each for each in slope)
+        )
+        values[f"g.holds porosity {kind} stays"] = is_below(rise, STAYS)
     own_sizes = np.isclose(grown["nm"].to_numpy()[:, None], FIGURE_6).any(axis=1)
     smallest = np.isclose(grown["nm"], FIGURE_6[0])
     for name, part in (("", grown), (" smallest", grown[smallest]), (" larger", grown[own_sizes & ~smallest])):
         share, error, *_ = oblate_share(part.rename(columns=_AS_START), "start")
         found = values[f"g.oblate{name}"] = Measured(100 * share, 100 * error)
-        values[f"g.holds oblate{name}"] = is_below(found, 50.0) if name == " larger" else is_within(found, 45.0, 55.0)
+        values[f"g.holds oblate{name}"] = is_within(found, 45.0, 55.0)
+        values[f"g.round{name}"] = 100.0 * float((part["axis_c"] < ROUND * part["axis_b"]).mean())
+    half, fewer = values["g.oblate smallest"], values["g.oblate larger"]
+    change = Measured(fewer.value - half.value, math.hypot(fewer.error, half.error))
+    values["g.holds oblate larger"] = is_below(change, 0.0)
     ba = grown[(grown["type"] == "BA") & (grown["fractal_dimension"] < 3)]
     values["g.dimension"] = median(ba["fractal_dimension"])
     values["g.holds dimension"] = is_within(values["g.dimension"], 1.9, 2.1)

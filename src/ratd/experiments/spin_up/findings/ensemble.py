@@ -213,9 +213,18 @@ def what_contacts_hold(grown, firm, table):
         "bound.most printed": float(grown["printed"].max()),
         "bound.spun": len(table),
     }
-    beyond = table.loc[table["omega_first_loss"] > table["firm_bound"], "type"]
+    held = table["omega_first_loss"] / table["firm_bound"]
+    beyond = table.loc[held > 1.0, "type"]
+    gained = (table["n_contacts_max"] > table["n_contacts"])[held > 1.0]
     values["bound.over firm"] = len(beyond)
-    farthest = float((table["omega_first_loss"] / table["firm_bound"]).max())
+    values["bound.over firm gained"] = int(gained.sum())
+    # what is left reaches the bound, but for the steps in which omega is recorded
+    values["bound.at firm"] = int((~gained).sum())
+    values["bound.at firm most"] = float(held[held > 1.0][~gained].max() - 1.0) if not gained.all() else 0.0
+    values["bound.at firm monomers"] = (
+        int(table.loc[gained.index[~gained], "n_monomers"].max()) if not gained.all() else 0
+    )
+    farthest = float(held.max())
     values["bound.over firm most"] = farthest
     # the printed omega above what even the grain that holds longest would bear
     values["bound.above farthest"] = int((grown["printed"] > farthest * grown["firm_bound"]).sum())

@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.measured import Measured, geometric_mean
 from ratd.base.statistics import slope_error, slope_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import TYPES
+from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.marks import MAJORITY, MEDIAN_WINDOW
 
 __all__ = ["of_mark_rules"]
@@ -44,7 +44,7 @@ def of_mark_rules(table):
             own = ratio[ratio["type"] == kind]
             start = f"rules.{window:g} {majority:g} {kind}"
             large = own[own["a_eff"] > LARGE * NM]
-            values[start] = geometric_mean(own["ratio"], own["a_eff"])
+            values[start] = geometric_mean(own["ratio"], size_key(own["a_eff"]))
             values[f"{start} moved"] = float((np.abs(own["ratio"] - 1.0) > MOVED).mean())
             power, influence = slope_of(np.log(large["a_eff"]), np.log(large["ratio"]))
             values[f"{start} power"] = Measured(power, slope_error(influence))

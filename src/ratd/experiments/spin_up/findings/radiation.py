@@ -27,7 +27,9 @@ FARTHEST = 2.0 * COMPUTED[1]
 """Greatest size [m] that is told: the laws are of grains half as large."""
 NONE = "none"
 """What stands in a document where no size is destroyed."""
-
+HARDLY = 1.03
+"""Sizes that light weaker by this factor would leave whole, all of them, count as not destroyed: where it just touches
+omega of disruption, the smallest size says nothing, and the torque is not known so well."""
 
 WAYS = {
     "": {},
@@ -57,14 +59,15 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     Returns
     -------
     dict
-        "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed; the
-        same with "printed" for "ours", and with " porous" behind it, where gas hits all of the porous grain, with
-        " wide" where light does so too, or with " graphite", where the grain sheds infrared light as graphite does.
+        "radiation.q-S BAM1 100 ours" -> a_disr [nm] as a `Measured`, or the text `NONE` where no size is destroyed, or
+        only `HARDLY`; the same with "printed" for "ours", and with " porous" behind it, where gas hits all of the
+        porous grain, with " wide" where light does so too, or with " graphite", where the grain sheds infrared light
+        as graphite does.
         With " greatest" behind it the largest size that is destroyed, `NONE` also where there is no end to them, and
         with " range" the text of both drags. With "over" for "ours" ours over the printed one. "radiation.most error"
         is the greatest relative error of ours for the material of `shown`. For `shown` also, without errors, with
-        " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great, and with a name of
-        `SURROUNDINGS`.
+        " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great; for its material, with a
+        name of `SURROUNDINGS`.
     """
     values = {}
     for behind, how in WAYS.items():
@@ -80,7 +83,7 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     values |= _sizes(own, grown, [strength], " first", mark="omega_first_loss", **plain)
     values |= _sizes(own.assign(**{mark: DMT * own[mark]}), grown, [strength], " DMT", mark=mark, **plain)
     for name, around in SURROUNDINGS.items():
-        values |= _sizes(own, grown, [strength], f" {name}", mark=mark, around=around, **plain)
+        values |= _sizes(own, grown, strengths, f" {name}", mark=mark, around=around, **plain)
     return values
 
 
@@ -88,10 +91,14 @@ def _text(size):
     return size if isinstance(size, str) else f"{size.value:.0f}"
 
 
-def _sizes(table, grown, strengths, behind, **how):
+def _sizes(table, grown, strengths, behind, around=DIFFUSE, **how):
     """Slots of one way to count, with its name behind them."""
     values, ours = {}, {}
-    for row in surviving(table, grown, strengths, **how).to_dict("records"):
+    found = surviving(table, grown, strengths, around=around, **how)
+    weaker = around._replace(anisotropy=around.anisotropy / HARDLY)
+    hardly = surviving(table, grown, strengths, around=weaker, **(how | {"draws": 0}))["a_disr"].isna()
+    found.loc[hardly, ["a_disr", "a_disr_error", "greatest"]] = np.nan
+    for row in found.to_dict("records"):
         start = f"radiation.{row['material']} {row['type']} {row['strength']:g}"
         key = f"{start} {row['law']}{behind}"
         for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):

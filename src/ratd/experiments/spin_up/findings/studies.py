@@ -19,7 +19,7 @@ from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.findings.claims import all_of, is_below
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.base.measured import Measured, median
+from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.units import NM
 
 __all__ = ["MARKS", "cell_ratio", "carried_over", "of_studies", "paired", "studies", "with_radii"]
@@ -224,8 +224,10 @@ def of_studies(tables):
     Returns
     -------
     dict
-        ``STUDY.TYPE MARK``, ``all`` for all types together; ``dmt`` also by material, as in ``dmt.q-S BAM1
-        omega_mass_75``. ``printed.TYPE MARK table 3`` is over Eq. 33 with the printed Table 3.
+        ``STUDY.TYPE MARK``, ``all`` for all types together; where grains are compared with themselves a median, with
+        ``mean`` behind it the geometric mean, and with ``grains`` how many have the mark in both; ``dmt`` also by
+        material, as in ``dmt.q-S BAM1 omega_mass_75``. ``printed.TYPE MARK table 3`` is over Eq. 33 with the printed
+        Table 3.
 
         For other monomers also ``scaled k`` behind the mark, the same for omega sqrt(<a^k>^(1/k)), which Eq. 33 has at
         the same N_con and phi; ``law k``, see `carried_over`, with the exponent ``law.TYPE MARK alpha k``; and ratios
@@ -234,9 +236,10 @@ def of_studies(tables):
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
         with the least and the most of these, ``equal.holds compact`` whether they are more porous than ours at every
-        size. For other monomers also ``TYPE flatter``, by how much the power of size of a quarter is greater than ours
-        between the least and the greatest size, and ``TYPE SIZE nm`` for the filling factor, a quarter, and ``law k``,
-        with ``equal.sizes`` and ``equal.sizes chi2 k``, the number of these ratios and how far off they are.
+        size, ``equal_30nm.holds compact`` the same of one radius. For other monomers also ``TYPE flatter MARK``, by how
+        much the power of size is greater than ours between the least and the greatest size, of all marks and equal
+        radii ``equal.TYPE flatter least`` and ``most``, and ``TYPE SIZE nm`` for the filling factor, a quarter, and
+        ``law k``, with ``equal.sizes`` and ``equal.sizes chi2 k``, the number of these ratios and how far off they are.
     """
     ensemble = tables[ENSEMBLE]
     values = _same(DMT, tables[DMT], ensemble)
@@ -263,7 +266,10 @@ def _same(name, table, beside, sign="."):
     values = {f"{name}{sign}grains": len(pairs)}
     for kind, part in _parts(pairs):
         for mark in MARKS:
-            values[f"{name}{sign}{kind} {mark}"] = median(part[f"{mark}_ratio"])
+            ratio = part[f"{mark}_ratio"].dropna()
+            values[f"{name}{sign}{kind} {mark}"] = median(ratio)
+            values[f"{name}{sign}{kind} {mark} mean"] = geometric_mean(ratio)
+            values[f"{name}{sign}{kind} {mark} grains"] = len(ratio)
     return values
 
 
@@ -296,12 +302,13 @@ def _other(name, table, ensemble):
             values[f"{name}.{kind} {slot}"] = cell_ratio(part, ensemble, column)
         sizes = dict(list(part.groupby(np.round(part["a_eff"] / NM))))
         for size, own in sizes.items():
-            for column in ("filling_factor", "omega_mass_75"):
+            for column in ("n_monomers", "filling_factor", "omega_mass_75"):
                 values[f"{name}.{kind} {size:.0f} nm {column}"] = cell_ratio(own, ensemble, column)
-        values[f"{name}.{kind} flatter"] = _flatter(
-            *(cell_ratio(sizes[size], ensemble, "omega_mass_75") for size in (min(sizes), max(sizes))),
-            max(sizes) / min(sizes),
-        )
+        for mark in MARKS:
+            values[f"{name}.{kind} flatter {mark}"] = _flatter(
+                *(cell_ratio(sizes[size], ensemble, mark) for size in (min(sizes), max(sizes))),
+                max(sizes) / min(sizes),
+            )
     for mark in MARKS:
         for k in POWERS:
             for kind in TYPES:
@@ -332,8 +339,13 @@ def _equal(tables, values):
     """Slots of both studies of equal monomers together."""
     sizes = np.unique(np.round(tables[EQUAL[0]]["a_eff"] / NM))
     keys = [f"{name}.{kind} {size:.0f} nm" for name in EQUAL for kind in TYPES for size in sizes]
-    compact = [values[f"{key} filling_factor"] for key in keys]
-    found = {"equal.holds compact": all_of(is_below(ratio, 1.0) for ratio in compact)}
+    found = {}
+    for name in ("equal", *EQUAL):
+        compact = [values[f"{key} filling_factor"] for key in keys if key.startswith(name)]
+        found[f"{name}.holds compact"] = all_of(is_below(ratio, 1.0) for ratio in compact)
+    for kind in TYPES:
+        flatter = [values[f"{name}.{kind} flatter {mark}"] for name in EQUAL for mark in MARKS]
+        found |= {f"equal.{kind} flatter least": min(flatter), f"equal.{kind} flatter most": max(flatter)}
     small, large = (tables[name] for name in EQUAL)
     for kind, part in _parts(large):
         span = cell_ratio(part, small, "radius_1").value
