@@ -14,6 +14,7 @@ from ratd.experiments import intervals
 from ratd.experiments.evolve import RECORDS, evolve
 from ratd.geometry.box import periodic
 from ratd.laws import dmt, jkr
+from ratd.laws.contact_constants import equilibrium_compression
 from systems import clusters, tree
 
 A = 30e-9
@@ -185,6 +186,19 @@ def test_two_spheres_that_meet_keep_the_balance_with_the_default_step(speed, rec
     run = evolve(position, [2e-8, 2e-8], velocity, duration=1e-7 / speed, records=records)
     assert run["n_contacts"][-1] == 1
     assert abs(run["residual"][-1]) < 0.05 * run["kinetic_translation"][0]
+
+
+@pytest.mark.parametrize("speed", [5.0, 20.0, 50.0])
+@pytest.mark.parametrize("stretched", [0.6, 0.8])
+def test_a_stretched_pair_that_is_pushed_together_does_not_explode(speed, stretched):
+    """Near the end of its branch a contact may spring back by half of delta_0 in one step of the default length."""
+    radius, material = 50e-9, MATERIALS["q-S"]
+    delta_0 = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
+    run = evolve(
+        [[0, 0, 0], [2 * radius + stretched * delta_0, 0, 0]], [radius] * 2, [[speed, 0, 0], [0, 0, 0]],
+        material=material, contacts=[[0, 1]], duration=1e-9, balance=None,
+    )  # fmt: skip
+    assert run["kinetic_translation"].max() < 1.01 * run["kinetic_translation"][0]
 
 
 def test_velocity_and_spin_of_the_same_numbers_are_told_apart(tmp_path, monkeypatch):

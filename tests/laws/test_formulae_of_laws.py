@@ -89,6 +89,24 @@ def test_two_newton_steps_follow_the_change_of_a_time_step(s, change):
     assert jkr.compression_of(found) == pytest.approx(compression, abs=1e-6 * abs(change))
 
 
+@pytest.mark.parametrize("s", np.linspace(jkr.S_END, 1.0, 10))
+@pytest.mark.parametrize("change", [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0])
+@pytest.mark.parametrize(("up_to", "within"), [(1.0, 0.15), (2.0, 0.8)])
+def test_a_contact_that_springs_back_in_one_step_pushes_as_it_should(s, change, up_to, within):
+    """Newton's rule from the end of the branch would lead to forces of 20 000 F_C and more."""
+    compression = min(jkr.compression_of(s) + change, up_to)
+    (root,) = (x.real for x in np.roots([3.0, 0.0, 0.0, -2.0, -compression]) if x.imag == 0.0 and x.real >= jkr.S_END)
+    found = jkr.contact_state(compression, s)
+    assert abs(jkr.normal_force(found, 1.0) - jkr.normal_force(root, 1.0)) < within
+
+
+@pytest.mark.parametrize("s", [0.552, 0.56, 0.6, 0.63])
+def test_the_state_is_near_up_to_the_end_of_the_branch(s):
+    for change in (-1e-3, 1e-3):
+        compression = max(jkr.compression_of(s) + change, jkr.COMPRESSION_END)
+        assert jkr.compression_of(jkr.contact_state(compression, s)) == pytest.approx(compression, abs=1e-3)
+
+
 def test_the_state_follows_a_slow_pull_to_the_end_of_the_branch():
     s = 1.0
     for compression in np.linspace(1.0, jkr.COMPRESSION_END, 20001):

@@ -13,7 +13,7 @@ from ratd.base.parts import part
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.experiments.evolve import evolve
-from ratd.geometry.box import open_space
+from ratd.geometry.box import open_space, periodic
 from ratd.laws import jkr
 from ratd.laws.contact_fields import (
     A_I,
@@ -40,7 +40,7 @@ from ratd.laws.contact_fields import (
 )  # fmt: skip
 from ratd.observables.stress import total_stress
 
-(OVERLAP,) = law_fields(1)
+OVERLAP, STIFFNESS = law_fields(2)
 
 
 @part
@@ -50,16 +50,19 @@ class Spring(NamedTuple):
     k: float
 
     def n_fields(self):
-        return COMMON + 1
+        return COMMON + 2
 
     def vectors(self):
         return ()
 
     def idle(self, contact, at):
+        # `forces` computes idle contacts with the others: this one must not end, and must not push
         contact[at + OVERLAP] = 1.0
+        contact[at + STIFFNESS] = 0.0
 
     def begin(self, contact, at, pair, mass_i, mass_j, normal, distance, spin_i, spin_j, back, at_rest):
         contact[at + OVERLAP] = contact[at + A_I] + contact[at + A_J] - distance
+        contact[at + STIFFNESS] = self.k
         contact[at + STEP] = math.sqrt(mass_i * mass_j / (mass_i + mass_j) / self.k)
         return 0.0
 
@@ -74,7 +77,7 @@ class Spring(NamedTuple):
             contact[at + NCZ] = scratch[DZ + q] / d
             delta = contact[at + A_I] + contact[at + A_J] - d
             contact[at + OVERLAP] = delta
-            contact[at + NORMAL] = self.k * max(delta, 0.0)
+            contact[at + NORMAL] = contact[at + STIFFNESS] * max(delta, 0.0)
             scratch[FX + q] = contact[at + NORMAL] * contact[at + NCX]
             scratch[FY + q] = contact[at + NORMAL] * contact[at + NCY]
             scratch[FZ + q] = contact[at + NORMAL] * contact[at + NCZ]
@@ -87,7 +90,7 @@ class Spring(NamedTuple):
         return contact[at + OVERLAP] < 0.0
 
     def energies(self, contact, at):
-        return 0.5 * self.k * max(contact[at + OVERLAP], 0.0) ** 2, 0.0, 0.0, 0.0
+        return 0.5 * contact[at + STIFFNESS] * max(contact[at + OVERLAP], 0.0) ** 2, 0.0, 0.0, 0.0
 
     def damping_coefficient(self, contact, at):
         return 0.0
@@ -110,6 +113,17 @@ def test_two_spheres_bounce():
     assert mass @ v == pytest.approx(mass[0] * speed, rel=1e-12)
     # at the turning point all of the energy of the approach is in the spring
     assert run.stored.values[:, 0].max() == pytest.approx(0.5 * reduced * speed**2, rel=1e-3)
+
+
+def test_the_pressure_in_a_box_is_that_of_the_one_spring():
+    """Contacts that pad a block to eight do nothing."""
+    k, edge, overlap = 2.0, 1e-6, 1e-9
+    run = evolve(
+        [[0, 0, 0], [2e-7 - overlap, 0, 0]], [1e-7] * 2, material="ice", law=Spring(k), box=periodic(edge),
+        duration=1e-15, timestep=1e-16, records=1,
+    )  # fmt: skip
+    assert run.pressure_tensor.values[-1, 0] == pytest.approx(k * overlap * (2e-7 - overlap) / edge**3, rel=1e-6)
+    assert run.stored.values[0, 0] == pytest.approx(0.5 * k * overlap**2)
 
 
 def n_fields_and_edge(law, box):
