@@ -50,6 +50,13 @@ def test_two_monomers_part_where_they_must(radii, drive):
 
 
 @pytest.mark.parametrize("radii", [(30e-9, 30e-9), (12e-9, 60e-9)])
+def test_where_two_monomers_part_does_not_hang_on_the_number_of_records(radii):
+    """A record must not shorten the steps that follow it: the stretch of a short one holds omega back less."""
+    few, many = (float(spin_up(pair(*radii), records=records).omega[-1]) for records in (300, 10_000))
+    assert many == pytest.approx(few, rel=2e-4)
+
+
+@pytest.mark.parametrize("radii", [(30e-9, 30e-9), (12e-9, 60e-9)])
 def test_two_monomers_part_at_the_pull_off_force_of_their_law(radii):
     """That of DMT is 4/3 of that of JKR."""
     run = spin_up(pair(*radii), law=jkr(normal_force="DMT"))
@@ -111,15 +118,22 @@ def test_work_of_the_torque_is_stored_dissipated_dragged_and_carried_off(drive):
     assert float(run.dissipated_drag[-1]) > 3 * gap[-1] * float(run.torque_work[-1])
 
 
-def test_a_part_that_leaves_the_balance_is_made_again_with_smaller_steps():
-    """A piece that swings back and lands hard got more energy out of nothing than the torque had put in so far."""
+def greatest_jump(run, grain):
+    """Of the gap in the balance from one record to the next, over the work of the torque or a solid's energy."""
+    solid = 0.2 * grain.mass.sum() * (grain.effective_radius * run.attrs["cut_bound"]) ** 2
+    return (np.abs(np.diff(run.energy_residual)) / np.maximum(run.torque_work.values[1:], solid)).max()
+
+
+def test_a_part_that_leaves_the_balance_is_made_again_with_smaller_steps(monkeypatch):
+    """A piece swings back and lands hard; it got more energy out of nothing than the torque had put in so far."""
     grain = ratd.grow("BA", 150e-9, "a-C", 0)
     run = spin_up(grain)
-    gap = run.energy_residual.values
-    solid = 0.2 * grain.mass.sum() * (grain.effective_radius * run.attrs["cut_bound"]) ** 2
-    jump = np.abs(np.diff(gap)) / np.maximum(run.torque_work.values[1:], solid)
-    assert run.attrs["smaller_steps"] > 0 and run.attrs["end_reason"] == "one contact left"
-    assert jump.max() < 2 * runs.BALANCE
+    jump = greatest_jump(run, grain)
+    assert run.attrs["smaller_steps"] == 0 and jump < runs.BALANCE
+    monkeypatch.setattr(runs, "BALANCE", 0.7 * jump)
+    again = spin_up(grain)
+    assert again.attrs["smaller_steps"] > 0 and again.attrs["end_reason"] == "one contact left"
+    assert greatest_jump(again, grain) < 0.95 * jump
 
 
 def test_a_run_that_leaves_the_balance_says_so(grain, monkeypatch):

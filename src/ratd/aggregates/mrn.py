@@ -56,8 +56,8 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
     Notes
     -----
     Some 0.05 % of the spheres, two or three of 5000, hold 43 % of the mass. The mass of a free sample of 5000 scatters
-    by 37 %, its L_5 by a quarter, so that one free sample says little about the law. Fewer than about 1000 spheres
-    cannot have the L_5 of the law: a single one would need all the mass.
+    by 37 %, its L_5 by a quarter, so that one free sample says little about the law. Some hundreds of spheres
+    cannot have the L_5 of the law: a single one would need all the mass. Of 800 there still is a sample, of 500 none.
     """
     if not is_whole(n) or n < 2:
         raise InputError(f"n is {n!r}; it must be a whole number of at least 2.")

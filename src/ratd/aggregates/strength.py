@@ -59,7 +59,7 @@ def compressive_strength_tatsuuma2023(filling_factor, rolling_pressure, largest=
 
 
 def sound_speed_kataoka2013(filling_factor, rolling_pressure, density):
-    """Effective speed of sound sqrt(P_0/rho_0) phi [m/s].
+    """Effective speed of sound sqrt(P_0/(4/3 pi rho_0)) phi [m/s].
 
     References
     ----------

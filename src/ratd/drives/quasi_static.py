@@ -89,7 +89,9 @@ class QuasiStatic(NamedTuple):
         add_frame_forces(state, state.drive[OMEGA])
 
     def longest_step(self, state):
-        return TURN / state.drive[OMEGA] if state.drive[OMEGA] > 0.0 else math.inf
+        # The frame turns by TURN at most, and omega rises by pace TURN of itself, or of omega_1 where that is greater.
+        omega = state.drive[OMEGA]
+        return TURN * self.pace * max(omega, self.omega_1) / rise(self, omega)
 
     def move(self, state, box, kick, dt):
         drive = state.drive

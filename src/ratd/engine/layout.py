@@ -38,5 +38,10 @@ DRIVE_SCALARS = 24
 """Numbers that a drive may keep; the first is its clock, in which `Until.clock` and the fragments lost are told."""
 CLOCK = 0
 
-COUNTERS = "steps monomers contacts fragments_lost largest_monomers largest_contacts searches".split()
-STEPS, MONOMERS, CONTACTS, FRAGMENTS_LOST, LARGEST_MONOMERS, LARGEST_CONTACTS, SEARCHES = range(len(COUNTERS))
+COUNTERS = (
+    "steps monomers contacts fragments_lost largest_monomers largest_contacts searches "
+    "steady"  # steps since the length of the step changed, where the integrator chooses it
+).split()
+(
+    STEPS, MONOMERS, CONTACTS, FRAGMENTS_LOST, LARGEST_MONOMERS, LARGEST_CONTACTS, SEARCHES, STEADY,
+) = range(len(COUNTERS))  # fmt: skip

@@ -19,7 +19,7 @@ from ratd.engine.block_factor import PADDED, BlockFactor, find_block, order_bloc
 from ratd.engine.contacts import contact_start
 from ratd.engine.forces import contact_forces
 from ratd.engine.layout import (
-    CONTACTS, DT, DT_DRIFT, FASTEST, LOST_DAMP, LOST_MADE, MONOMERS, RADIUS, ROW, STEPS, STRETCH, TIME, VX, WX,
+    CONTACTS, DT, DT_DRIFT, FASTEST, LOST_DAMP, LOST_MADE, MONOMERS, RADIUS, ROW, STEADY, STEPS, STRETCH, TIME, VX, WX,
 )  # fmt: skip
 from ratd.engine.leapfrog import SAMPLE_EVERY
 from ratd.engine.lists import time_to_overlap
@@ -57,8 +57,6 @@ class Work(NamedTuple):
         Places of the fragments whose part is made anew.
     rows : (48,) float64
         Space for one contact, see `ratd.engine.mass_matrix`.
-    count : (1,) int64
-        Steps since the last change of the step's length.
     landed : (1,) float64
         `LOST_MADE` when contacts last changed [J]: it has grown since where two monomers have met.
     """
@@ -72,7 +70,6 @@ class Work(NamedTuple):
     turn_rate: np.ndarray
     chosen: np.ndarray
     rows: np.ndarray
-    count: np.ndarray
     landed: np.ndarray
 
 
@@ -127,7 +124,7 @@ class SemiImplicit(NamedTuple):
         # the speeds say nothing yet of the fall into a new contact, which one long step would pass over
         if state.scalar[LOST_MADE] > work.landed[0] and self.landing < state.scalar[DT]:
             state.scalar[DT] = rung_below(self.longest, self.landing)
-            work.count[0] = 0
+            state.counter[STEADY] = 0
         work.landed[0] = state.scalar[LOST_MADE]
         return _renewed(state, work)
 
@@ -155,7 +152,7 @@ class SemiImplicit(NamedTuple):
         return self.travel
 
     def limit(self, state, law, drive, box, far, least, work):
-        scalar = state.scalar
+        scalar, counter = state.scalar, state.counter
         greatest, stretching = contact_speeds(state, law, work.turn_rate)
         work.made[1] = add_turns(work, scalar[DT_DRIFT])
         scalar[STRETCH] = stretching * scalar[DT_DRIFT]
@@ -166,13 +163,13 @@ class SemiImplicit(NamedTuple):
         allowed = min(allowed, overlap, max(self.landing, 0.5 * touch))
         if speed > 0.0:
             allowed = min(allowed, 1.0 / speed)
-        work.count[0] += 1
+        counter[STEADY] += 1
         if allowed < scalar[DT]:
             scalar[DT] = rung_below(self.longest, allowed)
-            work.count[0] = 0
-        elif work.count[0] >= CLIMB_AFTER and scalar[DT] / RUNG <= allowed * 1.000001:
+            counter[STEADY] = 0
+        elif counter[STEADY] >= CLIMB_AFTER and scalar[DT] / RUNG <= allowed * 1.000001:
             scalar[DT] = rung_below(self.longest, scalar[DT] / RUNG * 1.000001)
-            work.count[0] = 0
+            counter[STEADY] = 0
 
 
 @jit
@@ -190,8 +187,7 @@ def _work(state):
     _find_blocks(state, factor, block)
     return Work(
         factor, block, np.zeros(PADDED * n), np.zeros(PADDED * n), np.zeros(2), np.zeros(n), np.zeros(n),
-        np.zeros(n, dtype=np.bool_), np.zeros(6 * PADDED), np.zeros(1, dtype=np.int64),
-        np.full(1, state.scalar[LOST_MADE]),
+        np.zeros(n, dtype=np.bool_), np.zeros(6 * PADDED), np.full(1, state.scalar[LOST_MADE]),
     )  # fmt: skip
 
 
@@ -220,10 +216,9 @@ def _renewed(state, work):
             work.made[0] = 0.0
             return Work(
                 work.factor, block, work.x, work.strain, work.made, work.turned, work.turn_rate, work.chosen, work.rows,
-                work.count, work.landed,
+                work.landed,
             )  # fmt: skip
     fresh = _work(state)
-    fresh.count[:] = work.count
     fresh.landed[:] = work.landed
     return fresh
 

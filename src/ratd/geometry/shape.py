@@ -170,7 +170,7 @@ def principal_axes(position, mass, radius):
 
 @jit
 def semi_axes(moments, density, a_eff):
-    """Semi-axes of the solid ellipsoid with the aggregate's moments of inertia in place of a sphere's (Eqs. 3-6).
+    """Semi-axes of the homogeneous ellipsoid of the aggregate's mass and moments of inertia (Eqs. 3-6).
 
     Parameters
     ----------

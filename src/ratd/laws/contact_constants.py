@@ -68,7 +68,7 @@ def touching_distance(a_i, a_j, surface_energy, reduced_modulus):
 
 
 def rolling_energy(R, surface_energy, critical_rolling_displacement):
-    """Energy that rolling by a quarter of a circle costs, E_roll = 12 pi^2 gamma R xi_c [J].
+    """Energy that rolling round an equal sphere by a quarter of a circle costs, E_roll = 12 pi^2 gamma R xi_c [J].
 
     Parameters
     ----------
@@ -78,6 +78,10 @@ def rolling_energy(R, surface_energy, critical_rolling_displacement):
         gamma [J m-2].
     critical_rolling_displacement : float
         xi_c [m].
+
+    Notes
+    -----
+    The limiting torque of rolling, 4 F_C xi_c, times pi, by which the two then turn against each other.
 
     References
     ----------

@@ -101,7 +101,7 @@ def spin_up(
     records : int
         Records of each octave of omega above the cut bound. They are evenly spaced in omega, by bound/(2 records) up to
         the bound; for each octave above the spacing doubles, so that a small remnant, which holds to hundreds of times
-        the bound, costs few records.
+        the bound, costs few records. A step makes one record at most: more than some 1000 make no more.
     snapshot_every : int
         Keep positions, fragments and forces of all monomers at every so many records; 0 for never.
     checkpoint : path-like, optional
@@ -245,8 +245,11 @@ class Run:
 
     @property
     def edge(self):
-        """Angular velocity [rad/s] of the next record."""
-        return min(edge_of_record(len(self.rows), self.bound, self.records), OMEGA_RAT)
+        """Angular velocity [rad/s] of the next record: what a step has passed over has none."""
+        number = len(self.rows)
+        while edge_of_record(number, self.bound, self.records) <= self.rows[-1][0]:
+            number += 1
+        return min(edge_of_record(number, self.bound, self.records), OMEGA_RAT)
 
     @property
     def wants_snapshot(self):
