@@ -29,6 +29,8 @@ HEAVY = 1e9
 RECORD_STRAIN = 1e-4
 """Way of the ends against each other between two records, over their distance at the start. It is short: BAM grains are
 brittle, and give way after some 7e-4."""
+IN_A_RECORD = 8
+"""Steps of a record at least."""
 LONGEST = 0.6
 """... at which the pulling ends at the latest."""
 FALLEN = 0.3
@@ -88,7 +90,7 @@ def pull_by_ends(state, axis, rate, *, held=HELD, integrator=None):
     held : float
         See `HELD`.
     integrator : part, optional
-        That of the spin-up by default.
+        That of the spin-up by default, with `IN_A_RECORD` steps a record at least.
 
     Returns
     -------
@@ -99,17 +101,21 @@ def pull_by_ends(state, axis, rate, *, held=HELD, integrator=None):
     InputError
         If the two ends would have monomers in common.
     """
-    integrator = semi_implicit(**STEP) if integrator is None else integrator
+    if integrator is None:
+        integrator = semi_implicit(**STEP | {"longest": min(STEP["longest"], RECORD_STRAIN / rate / IN_A_RECORD)})
     law, box = jkr(), open_space()
     state = copied(state)
     start_anew(state, law, integrator)
     ends, distance = _take(state, axis, rate, held)
-    momentum, time, force = [_momentum(state, end, axis) for end in ends], 0.0, []
-    while len(force) * RECORD_STRAIN < LONGEST:
-        state, _ = run(state, law, free(), box, integrator, until(time=(len(force) + 1) * RECORD_STRAIN / rate))
+    momentum, time, force, middle = [_momentum(state, end, axis) for end in ends], 0.0, [], []
+    while time * rate < LONGEST:
+        # a long step of another integrator may pass over several records
+        number = np.floor(time * rate / RECORD_STRAIN * (1.0 + 1e-12)) + 1.0
+        state, _ = run(state, law, free(), box, integrator, until(time=number * RECORD_STRAIN / rate))
         now = [_momentum(state, end, axis) for end in ends]
         lasted, time = state.scalar[TIME] - time, state.scalar[TIME]
         force.append(((now[0] - momentum[0]) / lasted, (momentum[1] - now[1]) / lasted))
+        middle.append((time - 0.5 * lasted) * rate)
         momentum = now
         mean = np.mean(force, axis=1)
         if len(force) > FEWEST and mean[-1] < FALLEN * mean.max():
@@ -118,7 +124,7 @@ def pull_by_ends(state, axis, rate, *, held=HELD, integrator=None):
     best = int(np.argmax(mean))
     return Pull(
         force=float(mean[best]),
-        strain=(best + 0.5) * RECORD_STRAIN,
+        strain=float(middle[best]),
         unequal=float(np.abs(force[:, 0] - force[:, 1]).mean() / mean[best]),
         steps=int(state.counter[STEPS]),
     )
