@@ -18,7 +18,7 @@ from ratd.experiments import intervals
 from ratd.experiments.relax import RESIDUAL, relax, residual_force, round_length
 from ratd.experiments.spin_up import how
 from ratd.experiments.spin_up import run as spinup
-from ratd.experiments.spin_up.records import edge_of_record
+from ratd.experiments.spin_up.records import edge_of_record, next_record
 from ratd.experiments.spin_up.run import Run, spin_up
 from ratd.geometry.box import open_space
 from ratd.geometry.shape import inertia_tensor
@@ -325,3 +325,16 @@ def test_interface_of_the_notebook():
     marks = ratd.disruption(run)
     assert run.attrs["steps"] > 0 and run.attrs["timestep"] > 0.0
     assert 0.0 < float(marks["omega_first_loss"]) <= float(run.omega[-1])
+
+
+@pytest.mark.parametrize("records", [1, 7, 300])
+@pytest.mark.parametrize("number", [1, 5, 800])
+def test_the_next_record_is_the_first_above_omega(records, number):
+    """Beside a search one by one, at an edge and off it."""
+    for last in (number, number + 3 * records, 9 * records):
+        for part in (0.9999, 1.0, 1.0001):
+            omega = part * edge_of_record(last, 1e7, records)
+            found = number
+            while edge_of_record(found, 1e7, records) <= omega:
+                found += 1
+            assert next_record(number, omega, 1e7, records) == found

@@ -1,5 +1,8 @@
 """What is recorded of a spin-up: rows, snapshots, fragments that left, and the Dataset that they make."""
 
+from bisect import bisect_right
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -63,10 +66,20 @@ def let_go(state):
         note_lost(state, rows[members, MASS].sum(), members.sum())
 
 
+OCTAVES = 64
+"""No remnant holds so many octaves above the bound."""
+
+
 def edge_of_record(number, bound, records):
     """Angular velocity [rad/s] of a record: evenly spaced up to the bound by bound/(2 records), then in each octave."""
     octave = max(0, (number - records - 1) // records)
     return 2.0**octave * bound * (number - octave * records) / (2 * records)
+
+
+def next_record(number, omega, bound, records):
+    """The first record from `number` on that lies above an angular velocity [rad/s], see `edge_of_record`."""
+    edge = partial(edge_of_record, bound=bound, records=records)
+    return bisect_right(range(number + OCTAVES * records), omega, lo=number, key=edge)
 
 
 def sum_of_energies(state, law):

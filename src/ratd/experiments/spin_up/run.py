@@ -24,6 +24,7 @@ from ratd.experiments.spin_up.records import (
     dataset,
     edge_of_record,
     let_go,
+    next_record,
     record,
     snapshot,
     sum_of_energies,
@@ -246,9 +247,7 @@ class Run:
     @property
     def edge(self):
         """Angular velocity [rad/s] of the next record: what a step has passed over has none."""
-        number = len(self.rows)
-        while edge_of_record(number, self.bound, self.records) <= self.rows[-1][0]:
-            number += 1
+        number = next_record(len(self.rows), self.rows[-1][0], self.bound, self.records)
         return min(edge_of_record(number, self.bound, self.records), OMEGA_RAT)
 
     @property

@@ -20,10 +20,8 @@ from ratd.base.measured import Measured, median
 __all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
 
 BAM = ("BAM1", "BAM2")
-LARGE_FROM = 300
-"""Size [nm] from which on porosities are said to stagnate here."""
 STAYS = 0.05
-"""Rise of a porosity from there to the greatest size that is no rise."""
+"""Rise of a porosity over the large grains that is no rise."""
 ROUND = 1.7
 """c/b below which most large grains of the paper are."""
 FIGURE_6 = (200, 350, 500)
@@ -156,18 +154,18 @@ def _shapes(letter, table):
         values[f"{letter}.oblate {name} change"] = Measured(100 * change.value, 100 * change.error)
         more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
         values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more
-    stretch = (bam["axis_b_disr"] / bam["axis_a_disr"]).replace(np.inf, np.nan)
+    stretch = (table["axis_b_disr"] / table["axis_a_disr"]).replace(np.inf, np.nan)
+    most = stretch[bam.index].max()
     flat = {}
     for kind in TYPES:
         part = of_class(table[table["type"] == kind], "large")
-        flat[kind] = median((part["axis_b_disr"] / part["axis_a_disr"]).replace(np.inf, np.nan), cell_of(part))
-        values[f"{letter}.b/a {kind}"] = flat[kind]
+        flat[kind] = values[f"{letter}.b/a {kind}"] = median(stretch[part.index], cell_of(part))
     least = min(flat["BAM1"], flat["BAM2"])
     change = Measured(flat["BA"].value - least.value, math.hypot(flat["BA"].error, least.error))
     values[f"{letter}.holds b/a BA"] = is_below(change, 0.0)
     return values | {
-        f"{letter}.most oblate": float(stretch.max()),
-        f"{letter}.holds b/a": "yes" if 4.0 < stretch.max() < 6.25 else "no",
+        f"{letter}.most oblate": float(most),
+        f"{letter}.holds b/a": "yes" if 4.0 < most < 6.25 else "no",
     }
 
 
@@ -176,7 +174,7 @@ def grown_claims(grown):
     values = {}
     for kind, (low, high) in {"BA": (0.40, 0.85), "BAM1": (0.35, 0.70), "BAM2": (0.35, 0.50)}.items():
         part = grown[grown["type"] == kind]
-        large = part[part["nm"] > LARGE_FROM - 25]
+        large = of_class(part, "large")
         mean = Measured(*mean_of(large["porosity"], cell_of(large)))
         values[f"g.porosity {kind}"] = mean
         values[f"g.porosity {kind} range"] = f"{part['porosity'].min():.2f}–{part['porosity'].max():.2f}"
@@ -190,7 +188,7 @@ def grown_claims(grown):
             values[f"g.porosity {kind} {size}"] = means[size].value
         slope = _slope(np.log(large["a_eff"]), large["porosity"], large)
         rise = values[f"g.porosity {kind} rise"] = Measured(
-            *(math.log(max(means) / LARGE_FROM) * each for each in slope)
+            *(math.log(large["nm"].max() / large["nm"].min()) * each for each in slope)
         )
         values[f"g.holds porosity {kind} stays"] = is_below(rise, STAYS)
     own_sizes = np.isclose(grown["nm"].to_numpy()[:, None], FIGURE_6).any(axis=1)

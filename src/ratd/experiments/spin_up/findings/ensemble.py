@@ -214,21 +214,20 @@ def what_contacts_hold(grown, firm, table):
         "bound.spun": len(table),
     }
     held = table["omega_first_loss"] / table["firm_bound"]
-    beyond = table.loc[held > 1.0, "type"]
-    gained = (table["n_contacts_max"] > table["n_contacts"])[held > 1.0]
+    beyond = table[held > 1.0]
+    gained = beyond["n_contacts_max"] > beyond["n_contacts"]
+    # what is left reaches the bound, but for the steps in which omega is recorded
+    reached = beyond[~gained]
     values["bound.over firm"] = len(beyond)
     values["bound.over firm gained"] = int(gained.sum())
-    # what is left reaches the bound, but for the steps in which omega is recorded
-    values["bound.at firm"] = int((~gained).sum())
-    values["bound.at firm most"] = float(held[held > 1.0][~gained].max() - 1.0) if not gained.all() else 0.0
-    values["bound.at firm monomers"] = (
-        int(table.loc[gained.index[~gained], "n_monomers"].max()) if not gained.all() else 0
-    )
+    values["bound.at firm"] = len(reached)
+    values["bound.at firm most"] = float(max(held[reached.index], default=1.0)) - 1.0
+    values["bound.at firm monomers"] = int(max(reached["n_monomers"], default=0))
     farthest = float(held.max())
     values["bound.over firm most"] = farthest
     # the printed omega above what even the grain that holds longest would bear
     values["bound.above farthest"] = int((grown["printed"] > farthest * grown["firm_bound"]).sum())
-    values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond == kind).any())
+    values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond["type"] == kind).any())
     strength = strength_omega(table)
     for kind in TYPES:
         for name in CLASSES:

@@ -94,11 +94,11 @@ def _text(size):
 def _sizes(table, grown, strengths, behind, around=DIFFUSE, **how):
     """Slots of one way to count, with its name behind them."""
     values, ours = {}, {}
-    found = surviving(table, grown, strengths, around=around, **how)
+    sizes = surviving(table, grown, strengths, around=around, **how)
     weaker = around._replace(anisotropy=around.anisotropy / HARDLY)
     hardly = surviving(table, grown, strengths, around=weaker, **(how | {"draws": 0}))["a_disr"].isna()
-    found.loc[hardly, ["a_disr", "a_disr_error", "greatest"]] = np.nan
-    for row in found.to_dict("records"):
+    sizes.loc[hardly, ["a_disr", "a_disr_error", "greatest"]] = np.nan
+    for row in sizes.to_dict("records"):
         start = f"radiation.{row['material']} {row['type']} {row['strength']:g}"
         key = f"{start} {row['law']}{behind}"
         for end, size, error in (("", "a_disr", row["a_disr_error"]), (" greatest", "greatest", np.nan)):
