@@ -11,9 +11,11 @@ import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import _below, findings
+from ratd.experiments.compression.findings import findings, of_sizes
+from ratd.experiments.compression.pairs import BY_SIZE
 from ratd.experiments.compression.tables import joined
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
+from ratd.experiments.compression.verdicts import below
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
 
@@ -211,14 +213,33 @@ def test_the_strength_that_spin_implies_crosses_the_formula_where_its_power_law_
     phi = np.geomspace(0.1, 0.8, 12)
     formula = 0.6 * phi**1.8
     over = (phi / 0.4) ** 1.5
-    found = of_spun({"phi": phi, "strength": over * formula, "type": np.full(12, "BA")})
-    assert found["spun.BA power"].value == pytest.approx(1.5) and found["spun.BA phi"] == pytest.approx(0.4)
+    other = 2.0 * (phi / 0.4) ** 2
+    spun = {"phi": np.tile(phi, 2), "strength": np.concatenate([over * formula, other * formula])}
+    spun |= {"type": np.full(24, "BA"), "material": np.repeat(["q-S", "a-C"], 12)}
+    found = of_spun(spun)
+    told = [found[f"spun.BA {end} {name}"] for name in ("power", "phi") for end in ("least", "most")]
+    assert told == pytest.approx([1.5, 2.0, 0.4 / 2.0**0.5, 0.4])
+    found = of_spun({name: own[:12] for name, own in spun.items()})
     assert found["spun.BA least"] == pytest.approx(over[0]) and found["spun.BA most"] == pytest.approx(over[-1])
+
+
+def test_the_fractal_dimension_gives_the_power_that_the_paper_derives():
+    """N goes as r_g^D, and P as phi^(3/(3 - D)); the line is D = 2."""
+    for D in (2.0, 1.8):
+        n = np.array([1024, 4096, 16384])
+        square = [xr.Dataset({"n_monomers": k, "mean_square_gyration": k ** (2.0 / D)}) for k in n]
+        error = [table.assign(mean_square_gyration_error=0.02 * table["mean_square_gyration"]) for table in square]
+        found = of_sizes(dict(zip(BY_SIZE, error, strict=True)))
+        assert found["dimension"].value == pytest.approx(D)
+        assert found["derived_power"].value == pytest.approx(3.0 / (3.0 - D))
+        # the slope of ln r_g^2 over ln N is known to 0.02/(ln 4 sqrt 2)
+        spread = 0.5 * D**2 * 0.02 / np.log(4.0) / np.sqrt(2.0)
+        assert found["dimension"].error == pytest.approx(spread)
 
 
 def test_a_verdict_on_few_clusters_needs_more_than_two_errors():
     """Student's t: 0.5 with an error of 0.15 is below 1 in five clusters, and may be chance in three."""
-    assert _below(Measured(0.5, 0.15), 5) and not _below(Measured(0.5, 0.15), 3)
+    assert below(Measured(0.5, 0.15), 5) and not below(Measured(0.5, 0.15), 3)
 
 
 def test_tables_of_other_sets_are_not_joined():

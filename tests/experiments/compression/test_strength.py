@@ -70,6 +70,23 @@ def test_from_where_on_the_pressure_is_above_the_line():
         assert np.isnan(strength.crosses_line(table_of(lambda phi, f=factor: f * P_0 * phi**3), 0.3).value)
 
 
+def test_the_local_power_of_a_curve_that_bends_is_found():
+    """d ln P/d ln phi of (1/phi - 1/0.6)^-3 is 3/(1 - phi/0.6)."""
+    bent = table_of(lambda phi: P_0 * (1.0 / phi - 1.0 / 0.6) ** -3)
+    for phi in (0.1, 0.3, 0.4):
+        assert strength.power_at(bent, phi).value == pytest.approx([3.0 / (1.0 - phi / 0.6)], rel=1e-2)
+    assert np.isnan(strength.power_at(table_of(lambda phi: phi - 0.1), 0.1).value).all()
+
+
+def test_what_is_lost_up_to_a_filling_factor_is_read_there_and_not_at_the_next_bin():
+    table = table_of(lambda phi: P_0 * phi**3, seeds=2)
+    x = np.log(table["phi"].values)
+    table["dissipated_rolling"] = (("seed_number", "phi_bin"), np.array([x, np.where(x < np.log(0.1), x, np.nan)]))
+    assert losses.total_at(table, "dissipated_rolling", 0.0501)[0] == pytest.approx(np.log(0.0501))
+    assert np.isnan(losses.total_at(table, "dissipated_rolling", 0.2)).tolist() == [False, True]
+    assert np.isnan([losses.total_at(table, "dissipated_rolling", phi) for phi in (0.001, 0.7)]).all()
+
+
 def test_from_where_on_an_energy_is_lost():
     table = table_of(lambda phi: P_0 * phi**3)
     table["dissipated_sliding"] = (("seed_number", "phi_bin"), np.tile(1e-13 * table["phi"].values ** 5, (5, 1)))

@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from scipy.stats import t as student
 
 from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.aggregates.strength import (
+    PHI_MAX,
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
@@ -17,9 +17,9 @@ from ratd.base.materials import get_material
 from ratd.base.measured import Measured, quotient
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lammps
-from ratd.experiments.compression.losses import lost_from, overtakes, part_of_work, share_at
+from ratd.experiments.compression.losses import WAYS, lost_from, overtakes, part_of_work, share_at, total_at
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
-from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SMALL, beside, of_pairs
+from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SLOW_RATES, SMALL, of_pairs
 from ratd.experiments.compression.static import (
     box_rate,
     face_speed,
@@ -32,6 +32,7 @@ from ratd.experiments.compression.strength import (
     NEAR,
     along_axes,
     anisotropy_at,
+    compared,
     crosses_line,
     far_slope_of_structure,
     fit_power_law,
@@ -41,6 +42,7 @@ from ratd.experiments.compression.strength import (
     of_means,
     of_same_clusters,
     phi_at,
+    power_at,
     ratio_at,
     scatter_at,
     several,
@@ -48,6 +50,7 @@ from ratd.experiments.compression.strength import (
 )
 from ratd.experiments.compression.tables import nearest_phi
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
+from ratd.experiments.compression.verdicts import verdicts
 from ratd.observables.energy import DISSIPATED
 
 __all__ = ["findings"]
@@ -56,12 +59,15 @@ SLIDING = 1e-16
 """Energy [J] lost by sliding in a cluster at which it is said to begin: the least in the printed Fig. 8."""
 AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
 """Filling factors at which numbers are told."""
+HALF = 0.06
+"""Filling factor that parts the range of the fit in two, equal in the logarithm."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
 """Losses that are compared between long steps and explicit ones."""
-STEPS_AT = (0.01, 0.02)
-"""Filling factors below the range of the fit at which long steps are compared with explicit ones."""
-WAYS = ("rolling", "twisting", "sliding", "damping", "made")
-"""Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
+DAMPED = "dissipated_damping"
+STEPS_AT = (0.01, 0.02, 0.05, 0.1)
+"""Filling factors at which the pressure in long steps is compared with that in explicit ones."""
+STEPS_END = 0.19
+"""Filling factor up to which all of them go in long steps."""
 ROLLING_BETWEEN = ((0.005, 0.008), (0.008, 0.01), (0.01, 0.012), (0.012, 0.015), (0.02, 0.03))
 """Filling factors between which the part of the work that rolling takes is told."""
 BALANCE_AT = (0.003, 0.005, 0.01, 0.02, 0.03, 0.1, 0.3)
@@ -99,21 +105,23 @@ def of_set(name, table):
         found[f"ratio_{phi:g}"] = measured(ratio_at(table, phi))
         found[f"pressure_{phi:g}"] = found[f"ratio_{phi:g}"].value * found["P0"] * phi**3
         found[f"scatter_{phi:g}"] = measured(scatter_at(table, phi))
-        k = _bin_at(table, phi)
+        found[f"power_{phi:g}"] = measured(power_at(table, phi))
         found[f"contacts_{phi:g}"] = _contacts_at(table, phi)
         found[f"contacts_arakawa_{phi:g}"] = 1.0 + 4.69 * phi**1.62
         found[f"anisotropy_{phi:g}"] = measured(anisotropy_at(table, phi))
         found |= dict(zip((f"along_{axis}_{phi:g}" for axis in "xyz"), several(along_axes(table, phi)), strict=True))
         for way in WAYS:
             found[f"{way}_{phi:g}"] = measured(share_at(table, way, phi))
-        work = np.nanmean(table["work"].values[:, k])
+        work = np.nanmean(total_at(table, "work", phi))
         for mode in ("rolling", "twisting"):
-            found[f"held_{mode}_{phi:g}"] = float(np.nanmean(table[f"stored_{mode}"].values[:, k]) / work)
-        found[f"lost_rolling_{phi:g}"] = float(np.nanmean(table["dissipated_rolling"].values[:, k]) / work)
-        found[f"sliding_energy_{phi:g}"] = float(np.mean(table["dissipated_sliding"].values[:, k]))
+            found[f"held_{mode}_{phi:g}"] = float(np.nanmean(total_at(table, f"stored_{mode}", phi)) / work)
+        found[f"lost_rolling_{phi:g}"] = float(np.nanmean(total_at(table, "dissipated_rolling", phi)) / work)
+        found[f"sliding_energy_{phi:g}"] = float(np.mean(total_at(table, "dissipated_sliding", phi)))
     if last * NEAR > FIT_RANGE[1]:
         exponent, at, ratio = several(fit_power_law(table))
         found |= {"exponent": exponent, "prefactor": at, "ratio": ratio}
+        for half, part in (("first", (FIT_RANGE[0], HALF)), ("second", (HALF, FIT_RANGE[1]))):
+            found[f"exponent_{half}"] = several(fit_power_law(table, *part))[0]
     if found["start"] < 0.1 * LOW_RANGE[0] and last > LOW_RANGE[1]:
         found["exponent_low"], _, found["ratio_low"] = several(fit_power_law(table, *LOW_RANGE))
     found["rolling_over_made"] = measured(overtakes(table, "rolling", "made", found["static"]))
@@ -166,20 +174,57 @@ def _balance(table, last):
 
 
 def _with_limit(table, high):
-    """The fit with a greatest filling factor, and what it and the recalled formula give over P_0 phi^3."""
+    """The fit with a greatest filling factor, and what it and the recalled formula give, as ratio and as power."""
     found = dict(zip(("limit_c", "limit_phi"), several(fit_with_limit(table, high=high)), strict=True))
     for shorter in (0.3, 0.4):
         found[f"limit_phi_{shorter:g}"] = several(fit_with_limit(table, high=shorter))[1]
     for phi in AT:
         found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
-        fitted = compressive_strength_tatsuuma2023(phi, 1.0, found["limit_phi"].value)
+        limit = found["limit_phi"].value
+        fitted = compressive_strength_tatsuuma2023(phi, 1.0, limit)
         found[f"fitted_{phi:g}"] = float(found["limit_c"].value * fitted / phi**3)
+        # d ln/d ln phi of (1/phi - 1/limit)^-3
+        for name, end in (("fitted", limit), ("tatsuuma", PHI_MAX)):
+            found[f"{name}_power_{phi:g}"] = 3.0 / (1.0 - phi / end)
     return found
 
 
 def _solved(pressure, rolling_pressure):
     phi = np.linspace(0.01, 0.6, 5000)
     return float(np.interp(pressure, compressive_strength_tatsuuma2023(phi, rolling_pressure), phi))
+
+
+def of_sizes(sets):
+    """Fractal dimension of clusters of all sizes, and the power that Sect. 4 of the paper derives from one."""
+    every = [sets[name] for name in (*BY_SIZE, "slow_65536") if name in sets]
+    if len(every) < 3:
+        return {}
+    n, square, error = (
+        np.array([table[name].item() for table in every])
+        for name in ("n_monomers", "mean_square_gyration", "mean_square_gyration_error")
+    )
+    # N goes as the D-th power of the radius; r_g^2 as N^(2/D)
+    weight = square / error
+    slope, _ = np.polyfit(np.log(n), np.log(square), 1, w=weight)
+    spread = math.sqrt(np.polyfit(np.log(n), np.log(square), 1, w=weight, cov="unscaled")[1][0, 0])
+    D = Measured(2.0 / slope, 2.0 / slope**2 * spread)
+    return {"dimension": D, "derived_power": Measured(3.0 / (3.0 - D.value), 3.0 / (3.0 - D.value) ** 2 * D.error)}
+
+
+def of_rates(sets, values):
+    """How the clusters of Fig. 5 stand beside those at the usual rate, in errors, and the others at the usual rate."""
+    pairs = [values[f"rate_{rate}.paired"] for rate in SLOW_RATES if f"rate_{rate}.paired" in values]
+    if not pairs:
+        return {}
+    off = [abs(own.value - 1.0) / own.error for own in pairs]
+    found = {"rates.least": min(off), "rates.most": max(off)}
+    few, base = sets[f"rate_{SLOW_RATES[0]}"], sets["base"]
+    same = np.isin(base["seed"].values, few["seed"].values)
+    for name, own in (("same", same), ("others", ~same)):
+        if own.sum() > 1:
+            found[f"rates.{name}"] = several(fit_power_law(base.isel(seed_number=own)))[2]
+    again = [_again(sets[f"rate_{rate}"], base, 0.1) for rate in SLOW_RATES if f"rate_{rate}" in sets]
+    return found | {"rates.again_least": min(again), "rates.again_most": max(again)}
 
 
 def of_monomers(equal, tables):
@@ -204,8 +249,8 @@ def of_monomers(equal, tables):
 
 
 def of_steps(tables):
-    """Long steps over explicit ones, of the same clusters: pressure between the filling factors of the fit, work,
-    contacts and steps up to 0.2.
+    """Long steps over explicit ones, of the same clusters: geometric mean of the pressure over the range of the fit,
+    work, contacts, losses and steps up to 0.2, and what is damped from the beginning of that range to there.
 
     Parameters
     ----------
@@ -213,25 +258,25 @@ def of_steps(tables):
         ``explicit``, and others.
     """
     explicit = tables["explicit"]
-    seeds = list(explicit["seed"].values)
-    phi = explicit["phi"].values
-    fitted, end = phi[(phi > FIT_RANGE[0]) & (phi < FIT_RANGE[1])], phi[[_bin_at(explicit, 0.2)]]
     found = {}
     for name, table in tables.items():
-        same = [seeds.index(seed) for seed in table["seed"].values]
-        told = [("pressure", fitted), *((name, end) for name in ("n_contacts", "work", *STEPS_WAYS))]
-        for column, where in told:
-            own, other = (
-                each[column].values[:, [_bin_at(each, value) for value in where]].mean(axis=1)
-                for each in (table, explicit)
-            )
-            found[f"{name}.over_{column}"] = Measured(*mean_of(own / other[same]))
+        pair = of_same_clusters([table, explicit])
+        found[f"{name}.over_pressure"] = measured(compared(*pair))
+        for column in ("n_contacts", "work", *STEPS_WAYS):
+            found[f"{name}.over_{column}"] = _over(*(total_at(each, column, STEPS_END) for each in pair))
+        damped = (total_at(each, DAMPED, STEPS_END) - total_at(each, DAMPED, FIT_RANGE[0]) for each in pair)
+        found[f"{name}.over_damped_late"] = _over(*damped)
         for value in STEPS_AT:
-            own, other = (_near(each, value) for each in (table, explicit))
-            both = np.stack([own, other[same]], axis=1)
+            both = np.stack([_near(each, value) for each in pair], axis=1)
             found[f"{name}.over_pressure_{value:g}"] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
-        found[f"{name}.over_steps"] = float(np.mean(explicit["steps"].values[same] / table["steps"].values))
+        found[f"{name}.again"] = _again(*pair, 0.1)
+        found[f"{name}.over_steps"] = float(np.mean(pair[1]["steps"].values / pair[0]["steps"].values))
     return found
+
+
+def _over(own, other):
+    """Mean of the quotients of single clusters, `Measured`."""
+    return Measured(*mean_of(own / other))
 
 
 def of_closed_formulae():
@@ -305,86 +350,6 @@ def _bin_at(table, phi):
     return nearest_phi(table["phi"].values, phi)
 
 
-def verdicts(values, sets):
-    """Words on which sentences of the document rest."""
-    found = {}
-    for name, phi in ((BY_SIZE[-1], 0.03), (BY_SIZE[-1], 0.1), (HIGH, 0.3)):
-        if f"{name}.ratio_{phi:g}" in values:
-            ratio = values[f"{name}.ratio_{phi:g}"].value
-            found[f"line_{phi:g}"] = "on" if abs(ratio - 1.0) < 0.25 else "below" if ratio < 1.0 else "above"
-    exponents = [values[f"{name}.exponent"] for name in ("base", BY_SIZE[-1]) if f"{name}.exponent" in values]
-    words = {_beside_3(exponent) for exponent in exponents}
-    found["exponent"] = words.pop() if len(words) == 1 else "differs"
-    for name, phi in (("base", 0.1), (HIGH, 0.48)):
-        if f"{name}.rolling_{phi:g}" in values:
-            found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
-    for name in sets:
-        other = beside(name)
-        if name != other and {f"{name}.ratio", f"{other}.ratio"} <= set(values):
-            found[f"{name}.same"] = "agrees" if _same(values, name, other) else "differs"
-    if "xi_p48_32" in values:
-        alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
-        found["high_density"] = "hardly depends" if alike else "depends"
-    if "slow_16384.over_0.03" in values:
-        n = values["slow_16384.n"]
-        late = values["slow_16384.over_0.03"]
-        early = [values[f"slow_16384.{what}_0.005"] for what in ("over", "ratio")]
-        found["slow_early"] = "less" if all(_below(own, n) for own in early) else "as much"
-        found["slow_line"] = "below" if _below(values["slow_16384.ratio_0.01"], n) else "not below"
-        for phi in (0.01, 0.02):
-            both = [values[f"slow_16384.{over}_{phi}"] for over in ("over", "over_all")]
-            sure = all(_below(own, n) for own in both)
-            found[f"slow_{phi}"] = "show" if sure else "suggest" if both[0].value < 1.0 else "deny"
-        found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
-        steeper = values["slow_16384.steeper_low"]
-        found["slow_steeper"] = "more" if steeper.value > _sure(steeper, n) else "no more"
-    if "slow_16384.over_next_0.01" in values:
-        found["loose_line"] = "below" if _below(values["loose_16384.ratio_0.005"], values["loose_16384.n"]) else "on"
-        over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
-        found["slow_enough"] = "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in over) else "another"
-    if "short_16384.over_0.01" in values:
-        off = max(abs(values[f"short_16384.over_{phi}"].value - 1.0) for phi in (0.005, 0.01))
-        found["short_steps"] = "less than a tenth" if off < 0.1 else "a tenth or more"
-    if {"slow_65536.ratio_0.005", "slow_16384.ratio_0.005"} <= set(values):
-        alike = [
-            abs(values[f"slow_65536.ratio_{phi:g}"].value - own.value) < 2.0 * own.error
-            for phi, own in ((phi, values[f"slow_16384.ratio_{phi:g}"]) for phi in (0.005, 0.01))
-        ]
-        found["slow_size"] = "not the reason" if all(alike) else "a reason"
-    slow = [values[f"rate_{rate}.paired"].value for rate in ("1e-7", "1e-6", "3e-6") if f"rate_{rate}.paired" in values]
-    if slow:
-        found["rates"] = "a tenth" if max(abs(ratio - 1.0) for ratio in slow) < 0.15 else "more"
-    at_02 = [f"{name}.ratio_0.2" for name in ("xi_32", HIGH, "xi_2", "silicate_16384")]
-    if set(at_02) <= set(values):
-        much, some, *little = (values[name].value for name in at_02)
-        found["twisting_0.2"] = "the more" if much < some < min(little) else "no more"
-    if "silicate" in sets:
-        found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
-    return found
-
-
-def _sure(own, n):
-    """Half the width of the range that holds a mean of `n` clusters in 19 cases of 20 (Student's t)."""
-    return student.ppf(0.975, n - 1) * own.error
-
-
-def _below(own, n):
-    """Whether a ratio of `n` clusters is surely below 1."""
-    return own.value + _sure(own, n) < 1.0
-
-
-def _beside_3(exponent):
-    """Where an exponent lies beside the printed one."""
-    steeper = exponent.value - 3.0
-    return "is 3" if abs(steeper) < 2.0 * exponent.error else "above 3" if steeper > 0.0 else "below 3"
-
-
-def _same(values, name, beside):
-    """Whether the mean ratio in the range of the fit is that of another set, within 15 % and two errors."""
-    own, other = values[f"{name}.ratio"], values[f"{beside}.ratio"]
-    return abs(own.value - other.value) < max(0.15, 2.0 * math.hypot(own.error, other.error))
-
-
 def worst_balance(sets, values):
     """The worst balance of energy from 0.1 on of all sets with long steps, over the work."""
     long = [name for name, table in sets.items() if "SemiImplicit" in table.attrs["integrator"]]
@@ -429,6 +394,8 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         values |= of_steps(
             {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}
         )
+    values |= of_sizes(sets)
+    values |= of_rates(sets, values)
     if {SMALL, "xi_2", "xi_32"} <= set(sets):
         for name, times in ((SMALL, 4.0), ("xi_32", 16.0)):
             over = quotient(values[f"{name}.ratio_0.48"], values["xi_2.ratio_0.48"])

@@ -3,10 +3,12 @@
 import numpy as np
 
 from ratd.experiments.compression.strength import crossing, of_clusters, of_means
-from ratd.experiments.compression.tables import nearest_phi
 from ratd.observables.energy import DISSIPATED
 
-__all__ = ["lost_from", "overtakes", "part_of_work", "rates", "share_at"]
+__all__ = ["WAYS", "lost_from", "overtakes", "part_of_work", "rates", "share_at", "total_at"]
+
+WAYS = ("rolling", "twisting", "sliding", "damping", "made")
+"""Ways of losing energy whose shares are told; "made" is what a new contact radiates as it forms."""
 
 
 def rates(table, ways, own=slice(None)):
@@ -34,18 +36,25 @@ def rates(table, ways, own=slice(None)):
     return np.sqrt(phi[1:] * phi[:-1]), found
 
 
+def total_at(table, name, phi):
+    """What has been stored or lost of an energy up to phi, straight in ln phi between bins, of each cluster, (seeds,).
+
+    NaN for clusters without one of the two bins beside it.
+    """
+    x = np.log(table["phi"].values)
+    return np.array([np.interp(np.log(phi), x, own, left=np.nan, right=np.nan) for own in table[name].values])
+
+
 def share_at(table, way, phi):
     """Part of all the energy lost up to phi that went one way, `Fit` of one number."""
-    k = nearest_phi(table["phi"].values, phi)
-    lost = np.stack([table[f"dissipated_{name}"].values[:, k] for name in DISSIPATED], axis=1)
+    lost = np.stack([total_at(table, f"dissipated_{name}", phi) for name in DISSIPATED], axis=1)
     return of_means(lost[np.isfinite(lost).all(axis=1)], lambda mean: mean[DISSIPATED.index(way)] / mean.sum())
 
 
 def part_of_work(table, way, low, high):
     """Energy lost one way between two filling factors over the work of the box there, `Fit` of one number."""
-    ends = [nearest_phi(table["phi"].values, phi) for phi in (low, high)]
-    both = np.stack([table[name].values[:, ends] for name in (f"dissipated_{way}", "work")], axis=1)
-    grown = np.diff(both, axis=2)[:, :, 0]
+    both = [[total_at(table, name, phi) for name in (f"dissipated_{way}", "work")] for phi in (low, high)]
+    grown = np.diff(np.array(both), axis=0)[0].T
     return of_means(grown[np.isfinite(grown).all(axis=1)], lambda mean: mean[0] / mean[1])
 
 

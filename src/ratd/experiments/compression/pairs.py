@@ -15,7 +15,7 @@ from ratd.experiments.compression.strength import (
     several,
 )
 
-__all__ = ["BY_SIZE", "HIGH", "LOW_RANGE", "SMALL", "beside", "of_pairs"]
+__all__ = ["BY_SIZE", "HIGH", "LOW_RANGE", "SLOW_RATES", "SMALL", "beside", "of_pairs"]
 
 LOW_RANGE = (0.01, 0.05)
 """Filling factors between which the power law is fitted anew, where a cluster is large enough to reach them."""
@@ -34,6 +34,8 @@ LOOSE = {
 """Sets of loose clusters -> the set of the same clusters beside which they stand, and between which filling factors."""
 SLOWEST = ("slow_16384", "loose_16384")
 """The slowest squeeze of loose clusters, and the next one."""
+SLOW_RATES = ("1e-7", "1e-6", "3e-6")
+"""Rates of Fig. 5 beside the usual one that are slow enough, as the names of their sets have them."""
 BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the base set."""
 DENSE = ("equal", "k_n_10", "k_n_0")

@@ -93,8 +93,8 @@ def static_from(rate, n, monomer_radius, density, rolling_pressure):
     rho = rho_0 phi, and L is that of `box_size`. A box of the size L that shrinks at the rate H carries the mean
     square speed (H L)^2/4 along each axis at its faces, of which the mean over the box is a third; rho (H L)^2/8 is by
     how much the pressure differs between a box that carries everything along and one in which monomers fly straight.
-    What stays behind can need more than that: where this measure is just met, clusters of 16 384 press three times as
-    much as in a slower squeeze (docs/compression.md, "Looser").
+    What stays behind can need more than that: where this measure is just met, clusters of 16 384 press two to three
+    times as much as in a slower squeeze (docs/compression.md, "Looser").
     """
     size = box_size(n, monomer_radius, 1.0)
     return (density * (rate * size) ** 2 / (8.0 * INERTIAL_SHARE * rolling_pressure)) ** 0.375

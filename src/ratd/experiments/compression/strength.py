@@ -27,6 +27,7 @@ __all__ = [
     "of_means",
     "of_same_clusters",
     "phi_at",
+    "power_at",
     "ratio_at",
     "slope_of_structure",
 ]
@@ -173,6 +174,18 @@ def ratio_at(table, phi):
     degree = 2 if min(-x.min(), x.max()) > np.log(BIN) else 1
     ratio = pressure / table["rolling_pressure"].values[0] / there**3
     return of_means(ratio, lambda mean: np.polyval(np.polyfit(x, mean, degree), 0.0))
+
+
+def power_at(table, phi):
+    """d ln P/d ln phi at a filling factor, from the same bins as `ratio_at`; `Fit` of one number, NaN where P < 0."""
+    there, pressure = _within(table, phi / NEAR, phi * NEAR)
+    x = np.log(there / phi)
+    degree = 2 if min(-x.min(), x.max()) > np.log(BIN) else 1
+
+    def power(mean):
+        return np.polyfit(x, np.log(mean), degree)[-2] if (mean > 0.0).all() else np.nan
+
+    return of_means(pressure, power)
 
 
 def led_by(table, phi, k):

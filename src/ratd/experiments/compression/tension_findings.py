@@ -79,6 +79,9 @@ def of_tension(entries):
                 f"tension_{way}.held_{each:g}": int(held.sum()),
                 f"tension_{way}.of_held_{each:g}": Measured(*mean_of((strength / formula)[held])),
                 f"tension_{way}.residual_{each:g}": Measured(*mean_of(pressed)),
+                f"tension_{way}.scatter_{each:g}": float(np.std(strength[here], ddof=1) / np.mean(strength[here]))
+                if here.sum() > 1
+                else np.nan,
             }
             beside = main & (phi == each)
             if way not in ("x", "xyz") and beside.any():
@@ -106,18 +109,21 @@ def of_spun(spun):
     Returns
     -------
     dict
-        ``spun.TYPE``, the median; ``spun.TYPE least`` and ``most``; ``spun.TYPE power`` of phi with which it grows, and
-        ``spun.TYPE phi``, the filling factor at which a power law through the cells is 1.
+        ``spun.TYPE``, the median; ``spun.TYPE least`` and ``most``; ``spun.TYPE least power`` and ``most power`` of phi
+        with which it grows in one material; and ``spun.TYPE least phi`` and ``most phi``, the filling factor at which
+        the power law of one material is 1.
     """
     over = spun["strength"] / tensile_strength_tatsuuma2019(1.0, 1.0, spun["phi"])
     found = {}
     for kind in np.unique(spun["type"]):
         own, phi = over[spun["type"] == kind], spun["phi"][spun["type"] == kind]
         found |= {f"spun.{kind}": median(own), f"spun.{kind} least": own.min(), f"spun.{kind} most": own.max()}
-        if len(own) > 2:
-            (power, at_1), covariance = np.polyfit(np.log(phi), np.log(own), 1, cov=True)
-            found[f"spun.{kind} power"] = Measured(float(power), float(np.sqrt(covariance[0, 0])))
-            found[f"spun.{kind} phi"] = float(np.exp(-at_1 / power))
+        of_material = [spun["material"][spun["type"] == kind] == name for name in np.unique(spun["material"])]
+        fits = [np.polyfit(np.log(phi[each]), np.log(own[each]), 1) for each in of_material if each.sum() > 2]
+        if fits:
+            power, at_1 = np.array(fits).T
+            for name, told in (("power", power), ("phi", np.exp(-at_1 / power))):
+                found |= {f"spun.{kind} least {name}": told.min(), f"spun.{kind} most {name}": told.max()}
     return found
 
 
@@ -151,8 +157,8 @@ def spun_up(grains, mark="omega_disr"):
     Returns
     -------
     dict
-        ``phi``, ``strength`` (S a/gamma), ``type``: (k,) arrays, one number a material, type and size, means over
-        seeds; a is the mean radius of the monomers.
+        ``phi``, ``strength`` (S a/gamma), ``type``, ``material``: (k,) arrays, one number a material, type and size,
+        means over seeds; a is the mean radius of the monomers.
 
     Notes
     -----
@@ -172,4 +178,5 @@ def spun_up(grains, mark="omega_disr"):
         "phi": cells["filling_factor"].to_numpy(),
         "strength": cells["strength"].to_numpy(),
         "type": cells["type"].to_numpy(),
+        "material": cells["material"].to_numpy(),
     }
