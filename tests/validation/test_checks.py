@@ -433,7 +433,7 @@ def test_plan_names_every_piece_once():
         assert set(plan.pieces[extent]) == {
             "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
             "collision_step", "forces", "lammps", "mark_rules", "relaxation", "compression", "dense", "box_at_rest",
-            "quasi_static", "remnant",
+            "spring_back", "quasi_static", "remnant",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and kinds.kind_of(f"validation_{check}")

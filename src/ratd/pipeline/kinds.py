@@ -61,6 +61,7 @@ HOMES = {
             "mark_rules",
             "compression",
             "box_at_rest",
+            "spring_back",
             "dense",
             "growth",
             "relaxation",

@@ -40,7 +40,7 @@ CHECKS = (
     "literal", "compression", "dense", "box_at_rest", "collision_step",
 )  # fmt: skip
 """One file each, with a row a case."""
-ELSEWHERE = ("mark_rules",)
+ELSEWHERE = ("mark_rules", "spring_back")
 """Checks whose table another page tells of."""
 MADE = ("settings_hash", "code_hash", "versions")
 """What a table keeps of each of its pieces."""

@@ -89,6 +89,7 @@ class Checks:
             "compression": self._of_cluster,
             "dense": self._of_cluster,
             "box_at_rest": self._of_cluster,
+            "spring_back": self._spring_back,
             "lammps": self._lammps,
         }[check](own)
 
@@ -216,6 +217,16 @@ class Checks:
     def _of_cluster(self, own):
         shared = {key: value for key, value in own.items() if key != "seeds"}
         return {f"{own['material']}_{own['n']}_{seed}": shared | {"seed": seed} for seed in range(own["seeds"])}
+
+    def _spring_back(self, own):
+        shared = {key: value for key, value in own.items() if key != "clusters"}
+        return {
+            f"{group['n']}_{group['until_phi']:g}_{seed}": shared
+            | {key: value for key, value in group.items() if key != "seeds"}
+            | {"seed": seed}
+            for group in own["clusters"]
+            for seed in range(group["seeds"])
+        }
 
     def _lammps(self, own):
         pairs = [[a * NM for a in pair] for pair in own["pairs_nm"]]
