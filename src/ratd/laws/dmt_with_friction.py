@@ -464,8 +464,8 @@ def dmt(
     ----------
     viscous_time : float, optional
         A [s] of the damping force K A sqrt(delta) d(delta)/dt; it decides how much of an impact is dissipated. That of
-        the material when not given, see `viscous_time_of`: 0.5 ns for silica, as of Umstaetter & Urbassek (2020), who
-        do not print it.
+        the material when not given, see `viscous_time_of`: 0.5 ns for silica, as recalled of the group of Umstaetter &
+        Urbassek (2020), who do not print it.
     friction : {"none", "velocity", "spring"}
         How sliding, rolling and twisting are resisted: not; by a force that grows with their rate, min(limit, eta
         |rate|); by springs that are cut back at the limit.

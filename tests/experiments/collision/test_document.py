@@ -181,6 +181,7 @@ def test_collisions_that_were_done_once_more_stand_beside_the_same_ones():
     rows += [dict(law="half_step", sample=s, seed=0, X=9.0, N_s=0.5) | both for s in (1, 2)]
     found = _same_collisions(pd.DataFrame(rows))
     assert found["same X half_step 353nm 15"] == "1.50 ± 0.50" and found["same N_s half_step 353nm 15"] == "0.50"
+    assert found["change X half_step 353nm 15"] == "7.50 ± 0.50" and found["change N_s half_step 353nm 15"] == "0.00"
 
 
 def test_a_velocity_at_the_ceiling_says_nothing_of_the_radius():
@@ -235,6 +236,7 @@ def test_half_the_step_is_told_by_the_same_collisions():
     # X of 0.9, 0.45 and 0.4, less 0.1 at 15 and 20 m/s: it never falls through 0.15
     assert found["halved v_frag mrn100"] == "nan" and found["halved chance together"] == "1"
     # means of two samples that are two errors from 0; with one degree of freedom t is a tangent
+    assert found["halved v_frag each mrn100"] == "nan"
     pairs = pd.DataFrame({"sample": [1, 1, 2], "change": [0.0, 0.2, 0.3]})
     assert chance_of_change(pairs) == pytest.approx(1.0 - 2.0 / np.pi * np.arctan(2.0))
 
@@ -249,14 +251,14 @@ def test_tests_that_agree_are_surer_together():
 def test_what_a_cluster_is_at_its_own_fragmentation_velocity():
     rows = [
         dict(
-            law="velocity", cluster="mrn", impact_parameter=0.0, velocity=v, sample=sample, N_s=v / 40 + off, n_pieces=v
+            law="velocity", cluster="mrn", impact_parameter=0.0, velocity=v, sample=sample, N_s=v / 40, n_pieces=v,
+            X=0.15 + 0.01 * (own - v), seed=0,
         )
         for v in (20.0, 30.0)
-        for sample, off in ((1, -0.01), (2, 0.01))
-    ]
-    limits = pd.DataFrame([dict(law="velocity", cluster="mrn", impact_parameter=0.0, velocity=26.0)])
-    found = at_own_v_frag(pd.DataFrame(rows), limits, ("mrn", "353nm"))
-    assert found == {"own N_s mrn": "0.65 ± 0.01", "own n_pieces mrn": "26"}
+        for sample, own in ((1, 24.0), (2, 28.0))
+    ]  # fmt: skip
+    found = at_own_v_frag(pd.DataFrame(rows), ("mrn", "353nm"))
+    assert found == {"own N_s mrn": "0.65 ± 0.05", "own n_pieces mrn": "26 ± 2"}
 
 
 def test_the_damping_time_that_fits_all_printed_velocities_is_found():
@@ -270,7 +272,8 @@ def test_the_damping_time_that_fits_all_printed_velocities_is_found():
         for time in (0.5, 1.0, 2.0)
     ]  # fmt: skip
     found = _on_all_three(pd.DataFrame(rows))
-    assert found["A common"] == "1.3" and found["common off"] == "0 %" and found["common 570nm"] == "12.5"
+    assert found["A common"] == found["A alone 453nm"] == "1.30"
+    assert found["common off"] == "0 %" and found["common 570nm"] == "12.5"
 
 
 def test_a_sample_is_told_with_its_own_moments(tables):

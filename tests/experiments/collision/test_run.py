@@ -167,7 +167,7 @@ def test_sticking_velocity():
 
 @pytest.mark.parametrize(("a_i", "a_j"), [(50e-9, 0.5e-6), (50e-9, 0.1e-6), (70e-9, 0.3e-6)])
 def test_the_longest_step_of_the_document_does_for_two_spheres(a_i, a_j):
-    """3.5 ps, a quarter of the time of the damping: what single impacts keep is that of a step of 0.25 ps."""
+    """3.5 ps, a sixth to a fifth of the time of the damping: what single impacts keep is that of a step of 0.25 ps."""
     left = []
     for timestep in (3.5e-12, 0.25e-12):
         for part in (0.1, 0.4, 0.7, 0.9):
@@ -248,7 +248,7 @@ def test_an_early_state_of_a_collision_is_told():
 
 
 def test_the_damping_is_that_of_the_material():
-    """As of JKR at the same radius of the contact; for silica the 0.5 ns that the paper's authors use."""
+    """As of JKR at the same radius of the contact; for silica the 0.5 ns that is recalled of the paper's authors."""
     assert viscous_time_of(ratd.laws.dmt(), SILICA) == pytest.approx(0.5e-9, rel=1e-3)
     assert viscous_time_of(ratd.laws.dmt(viscous_time=1e-9), SILICA) == 1e-9
     ice = MATERIALS["ice"]

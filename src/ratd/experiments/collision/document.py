@@ -15,6 +15,7 @@ from ratd.experiments.collision.document_samples import (
     halved,
     largest,
     of_same_samples,
+    radius_by_half,
     samples_of_the_law,
     with_and_without,
 )
@@ -29,6 +30,7 @@ from ratd.experiments.collision.fragmentation import (
 )
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
+from ratd.experiments.collision.tables import GRID
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
 from ratd.laws.dmt_with_friction import PERIOD_PARTS
 from ratd.pipeline import io
@@ -73,6 +75,7 @@ def values(table, thresholds, likeness):
         found[f"n {key}"] = str(len(part))
         for column in COLUMNS:
             found[f"{column} {key}"] = with_error(*mean_and_error(part, column))
+    printed = {f"{radius / NM:.0f}nm": velocity for radius, velocity in PRINTED_THRESHOLDS.items()}
     for _, row in thresholds.iterrows():
         key = f"{row['law']} {row['cluster']}" + _off_centre(row["impact_parameter"])
         found[f"v_frag {key}"] = _threshold(row)
@@ -82,6 +85,10 @@ def values(table, thresholds, likeness):
         found[f"ratio {key}"] = with_error(row["velocity"] / stick, row["error"] / stick, 1) if is_close(row) else "–"
         relative = 2.0 * row["error"] / row["velocity"]
         found[f"energy {key}"] = f"{row['energy_per_contact']:.2g} ± {relative:.0%}" if is_close(row) else "–"
+        if row["law"] == "velocity" and row["cluster"] in printed:
+            # it goes with the square of the velocity
+            energy = row["energy_per_contact"] * (printed[row["cluster"]] / row["velocity"]) ** 2
+            found[f"energy printed {row['cluster']}"] = f"{energy:.2g}"
     for _, row in likeness.iterrows():
         key = f"{row['law']} {row['cluster']} {row['quantity']}"
         found[f"radius {key}"] = radius_text(row)
@@ -92,9 +99,9 @@ def values(table, thresholds, likeness):
     found |= by_sample(table, "velocity", "mrn") | with_and_without(table, COLUMNS) | largest(table)
     found |= samples_of_the_law() | of_same_samples(table) | _one_pair(table) | _same_collisions(table)
     found |= _calibrated(thresholds) | _first_fall(table, thresholds) | _exponents(thresholds) | _constants(table)
-    found |= _recipe(table, thresholds) | at_own_v_frag(table, thresholds, ("mrn", "353nm")) | _on_all_three(thresholds)
+    found |= _recipe(table, thresholds) | at_own_v_frag(table, ("mrn", "353nm")) | _on_all_three(thresholds)
     found |= _by_v_frag(table, thresholds) | _below_ceiling(table) | _at_each_velocity(table)
-    found |= halved(table) | _late(table) | _shorter(table, "velocity", "mrn")
+    found |= halved(table) | radius_by_half(table, "mrn") | _late(table) | _shorter(table, "velocity", "mrn")
     found |= {
         "collisions": str((~table["law"].isin(SAME)).sum()),
         "collisions again": str(table["law"].isin(SAME).sum()),
@@ -149,6 +156,8 @@ def _calibrated(thresholds):
 def _on_all_three(thresholds):
     """``A common``: damping time [ns] that fits all three printed v_frag best; ``common 570nm``: v_frag there [m/s].
 
+    ``A alone 570nm``: damping time [ns] at which a power law has the printed v_frag of one radius.
+
     v_frag of each radius is a power of the damping time, fitted to all that were tried, by their errors; ``common
     off``: by how much the worst of the three is off.
     """
@@ -167,7 +176,9 @@ def _on_all_three(thresholds):
     best = np.sum(slopes * (np.array(list(printed.values())) - heights)) / np.sum(slopes**2)
     found = {f"common {name}": f"{np.exp(np.polyval(line, best)):.1f}" for name, line in lines.items()}
     off = max(abs(np.expm1(np.polyval(line, best) - printed[name])) for name, line in lines.items())
-    return found | {"A common": f"{1e9 * np.exp(best):.1f}", "common off": f"{100.0 * off:.0f} %"}
+    for name, (slope, height) in lines.items():
+        found[f"A alone {name}"] = f"{1e9 * np.exp((printed[name] - height) / slope):.2f}"
+    return found | {"A common": f"{1e9 * np.exp(best):.2f}", "common off": f"{100.0 * off:.0f} %"}
 
 
 def _one_pair(table):
@@ -275,7 +286,7 @@ def _at_each_velocity(table):
 def _same_collisions(table):
     """What collisions that were done once more, under a law of `SAME`, had under the law "velocity".
 
-    ``same X longer 353nm 20``, ``same v_frag longer 298nm``.
+    ``same X longer 353nm 20``, ``same v_frag longer 298nm``; ``change X longer 353nm 20``: by how much they changed.
     """
     alike = ["cluster", "velocity", "sample", "seed"]
     table = table[table["impact_parameter"] == 0]
@@ -285,10 +296,15 @@ def _same_collisions(table):
         own = base.merge(table.loc[table["law"] == law, alike])
         for (cluster, velocity), part in own.groupby(["cluster", "velocity"]):
             for column in ("X", "N_s"):
-                found[f"same {column} {law} {cluster} {velocity:g}"] = with_error(*mean_and_error(part, column))
+                key = f"{column} {law} {cluster} {velocity:g}"
+                found[f"same {key}"] = with_error(*mean_and_error(part, column))
+                both = part.merge(table[table["law"] == law], on=alike, suffixes=("", " again"))
+                both = both.assign(change=both[f"{column} again"] - both[column])
+                found[f"change {key}"] = with_error(*mean_and_error(both, "change"))
         for cluster, part in own.groupby("cluster"):
             row = fragmentation_velocity(part)
-            found[f"same v_frag {law} {cluster}"] = with_error(row["velocity"], row["error"], 1)
+            error = np.hypot(row["error"], GRID * (row["above"] - row["below"]))
+            found[f"same v_frag {law} {cluster}"] = with_error(row["velocity"], error, 1)
     return found
 
 

@@ -1,6 +1,7 @@
 """Slots of docs/collision.md that set samples or single collisions beside each other, and what samples are."""
 
 import numpy as np
+import pandas as pd
 from scipy.stats import norm as normal
 from scipy.stats import t as student
 
@@ -8,7 +9,12 @@ from ratd.aggregates.mrn import free_samples, mrn, sample_length, sample_moment
 from ratd.base.statistics import mean_of
 from ratd.base.units import NM
 from ratd.experiments.collision.document_texts import with_error
-from ratd.experiments.collision.fragmentation import fragmentation_velocity, mean_and_error, means
+from ratd.experiments.collision.fragmentation import (
+    fragmentation_velocities,
+    fragmentation_velocity,
+    mean_and_error,
+    means,
+)
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 
 __all__ = [
@@ -19,6 +25,7 @@ __all__ = [
     "halved",
     "largest",
     "of_same_samples",
+    "radius_by_half",
     "samples_of_the_law",
     "together",
     "with_and_without",
@@ -56,7 +63,8 @@ def with_and_without(table, columns):
 def of_same_samples(table):
     """Values of MRN above 0.1 um with rate friction, of the samples that another cluster or law has.
 
-    ``beside X velocity mrn100_tree 15`` and ``beside X spring mrn100 15``.
+    ``beside X velocity mrn100_tree 15`` and ``beside X spring mrn100 15``; ``change X ...``: what the other one has
+    more, mean and error over the samples.
     """
     table = table[table["impact_parameter"] == 0]
     base = table[(table["law"] == "velocity") & (table["cluster"] == "mrn100")]
@@ -65,8 +73,12 @@ def of_same_samples(table):
         other = table[(table["law"] == law) & (table["cluster"] == cluster)]
         for velocity, part in base[base["sample"].isin(other["sample"].unique())].groupby("velocity"):
             for column in ("X", "N_s"):
-                key = f"beside {column} {law} {cluster} {velocity:g}"
-                found[key] = with_error(*mean_and_error(part, column))
+                key = f"{column} {law} {cluster} {velocity:g}"
+                found[f"beside {key}"] = with_error(*mean_and_error(part, column))
+                changed = other[other["velocity"] == velocity].groupby("sample")[column].mean()
+                more = (changed - part.groupby("sample")[column].mean()).dropna()
+                if len(more) > 1:
+                    found[f"change {key}"] = with_error(*mean_of(more.to_numpy()))
     return found
 
 
@@ -76,7 +88,8 @@ def halved(table):
     ``halved X CLUSTER``, ``halved N_s CLUSTER``; ``halved n CLUSTER``: how many pairs; ``halved scatter CLUSTER``:
     standard deviation of the change of N_s between them; ``halved chance COLUMN CLUSTER``: in one case of how many
     chance alone makes so great a mean change, see `chance_of_change`; ``halved chance together``: the same of N_s of
-    all clusters (`together`); ``halved v_frag CLUSTER``: v_frag [m/s] if X is changed so wherever pairs were done.
+    all clusters (`together`); ``halved v_frag CLUSTER``: v_frag [m/s] if X is changed by the mean wherever pairs were
+    done, and ``halved v_frag each CLUSTER``, by what it changes at each velocity.
     """
     found, chances = {}, []
     for cluster in sorted(table.loc[table["law"] == "half_step", "cluster"].unique()):
@@ -88,7 +101,9 @@ def halved(table):
             found[f"halved chance {column} {cluster}"] = f"{1.0 / chance:.0f}"
             if column == "N_s":
                 chances.append((mean, chance))
-        found[f"halved v_frag {cluster}"] = f"{_v_frag_by_half(table, cluster):.1f}"
+        for name, each in (("", False), (" each", True)):
+            row = fragmentation_velocity(_by_half(table, "X", cluster, each), samples=2)
+            found[f"halved v_frag{name} {cluster}"] = f"{row['velocity']:.1f}"
         found[f"halved n {cluster}"] = str(len(pairs))
         found[f"halved scatter {cluster}"] = f"{pairs['change'].std(ddof=1):.2f}"
     if chances:
@@ -96,13 +111,33 @@ def halved(table):
     return found
 
 
-def _v_frag_by_half(table, cluster):
-    """v_frag [m/s] of a cluster if half the step changes X by as much wherever it was done again."""
-    pairs = change_by_half(table, "X", cluster)
-    mean, _ = mean_and_error(pairs, "change")
+def _by_half(table, column, cluster, each=False):
+    """Collisions of a cluster with a column changed as half the step changes it, in the mean or at each velocity."""
+    pairs = change_by_half(table, column, cluster)
     own = table[(table["law"] == "velocity") & (table["cluster"] == cluster) & (table["impact_parameter"] == 0)]
-    near = own["velocity"].between(pairs["velocity"].min(), pairs["velocity"].max())
-    return fragmentation_velocity(own.assign(X=own["X"] + np.where(near, mean, 0.0)), samples=2)["velocity"]
+    if each:
+        by_velocity = {velocity: mean_and_error(part, "change")[0] for velocity, part in pairs.groupby("velocity")}
+        change = own["velocity"].map(by_velocity).fillna(0.0)
+    else:
+        near = own["velocity"].between(pairs["velocity"].min(), pairs["velocity"].max())
+        change = np.where(near, mean_and_error(pairs, "change")[0], 0.0)
+    return own.assign(**{column: own[column] + change})
+
+
+def radius_by_half(table, cluster):
+    """``halved radius X CLUSTER``: radius [nm] of the equal spheres that a cluster is like if half the step changes X.
+
+    Or N_s; by the mean change, wherever pairs were done.
+    """
+    central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
+    found = {}
+    for column in ("X", "N_s"):
+        own = _by_half(table, column, cluster)
+        # the least bootstrap: its errors are not told
+        rows = likeness_table(pd.concat([own, central[is_equal(central)]]), samples=2)
+        for _, row in rows[(rows["cluster"] == cluster) & (rows["quantity"] == column)].iterrows():
+            found[f"halved radius {column} {cluster}"] = f"{row['radius'] / NM:.0f}"
+    return found
 
 
 def together(chances):
@@ -117,19 +152,22 @@ def together(chances):
     return float(2.0 * normal.sf(abs(np.sum(z)) / np.sqrt(len(z))))
 
 
-def at_own_v_frag(table, thresholds, clusters):
-    """``own N_s CLUSTER`` and ``own n_pieces CLUSTER``: at the v_frag of each, straight between velocities."""
+def at_own_v_frag(table, clusters):
+    """``own N_s CLUSTER`` and ``own n_pieces CLUSTER``: of each sample at its own v_frag, mean and error over samples.
+
+    Straight between velocities.
+    """
     central = table[(table["law"] == "velocity") & (table["impact_parameter"] == 0)]
-    own = thresholds[(thresholds["law"] == "velocity") & (thresholds["impact_parameter"] == 0)].set_index("cluster")
     found = {}
     for cluster in clusters:
         part = central[central["cluster"] == cluster]
-        if cluster not in own.index or part.empty:
-            continue
-        for column, digits in (("N_s", 2), ("n_pieces", 0)):
-            velocity, mean, error = means(part, column)
-            at, spread = (np.interp(own.loc[cluster, "velocity"], velocity, values) for values in (mean, error))
-            found[f"own {column} {cluster}"] = with_error(at, spread, digits)
+        speeds = fragmentation_velocities(part) if len(part) else []
+        for column, digits in (("N_s", 2), ("n_pieces", 0)) if len(speeds) else ():
+            at = [
+                np.interp(speed, *means(own, column)[:2])
+                for speed, (_, own) in zip(speeds, part.groupby("sample"), strict=True)
+            ]
+            found[f"own {column} {cluster}"] = with_error(*mean_of(np.array(at)), digits)
     return found
 
 
