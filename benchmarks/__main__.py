@@ -192,7 +192,7 @@ def _pipeline(arguments, out, about):
     small = [size for size in plan.sizes[::-1] if float(size) <= arguments.small]
     if not small:
         raise InputError(f"--small is {arguments.small:g}; it must be at least the smallest size, {plan.sizes[-1]}.")
-    pipeline.measure(out, plan, root=ROOT, sizes=small, about=about, say=say)
+    pipeline.measure(out, plan, root=ROOT, sizes=small, warm=not arguments.quick, about=about, say=say)
 
 
 def _profile(arguments, out, about):

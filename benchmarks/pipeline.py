@@ -26,7 +26,7 @@ PARTS = ("config", "profiles", "workflow", "Snakefile")
 """What Snakemake needs of the repository, next to the installed library."""
 
 
-def measure(out, plan, *, root, sizes, about, say):
+def measure(out, plan, *, root, sizes, warm, about, say):
     """Measure and write ``pipeline.csv``, a row a size.
 
     Parameters
@@ -39,6 +39,8 @@ def measure(out, plan, *, root, sizes, about, say):
         Folder of the repository.
     sizes : list of str
         Sizes, a subset of those of the plan.
+    warm : bool
+        Whether Snakemake runs once before, so that no code is compiled while it is timed.
     about : dict
         Columns that each row gets: the machine and the versions.
     say : callable
@@ -55,8 +57,9 @@ def measure(out, plan, *, root, sizes, about, say):
         for name in PARTS:
             copy = shutil.copytree if (root / name).is_dir() else shutil.copy
             copy(root / name, folder / name)
-        _snakemake(folder, plan, sizes[0], seeds=1, results="warm")  # compiles, as does the next line
-        _work(plan, sizes[0], 1)
+        _work(plan, sizes[0], 1)  # compiles, as does the next line
+        if warm:
+            _snakemake(folder, plan, sizes[0], seeds=1, results="warm")
         material = plan.config["materials"][0]
         for size in sizes:
             seconds = _work(plan, size, len(plan.seeds))

@@ -13,7 +13,14 @@ def test_every_compiled_function_has_the_flags_of_the_one_place():
     """No file of the package calls numba but those that say how code is compiled, and one that names its version."""
     allowed = {
         SOURCE / name
-        for name in ("base/jit.py", "base/parts.py", "base/rows.py", "base/vectors.py", "base/vectors8.py")
+        for name in (
+            "base/jit.py",
+            "base/own_cache.py",
+            "base/parts.py",
+            "base/rows.py",
+            "base/vectors.py",
+            "base/vectors8.py",
+        )
     }
     allowed.add(SOURCE / "experiments" / "spin_up" / "formulae.py")
     for path in SOURCE.rglob("*.py"):

@@ -12,7 +12,8 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from ratd.base.parts import FLAGS, OwnPartsCache
+from ratd.base.own_cache import OwnCache
+from ratd.base.parts import FLAGS
 
 COMPILED = ("base", "laws", "geometry", "engine", "drives", "observables", "aggregates", "experiments")
 """Layers with compiled code."""
@@ -52,5 +53,5 @@ def jit(function=None, **options):
     if function is None:
         return lambda inner: jit(inner, **options)
     compiled = numba.njit(**(FLAGS | options))(function)
-    compiled._cache = OwnPartsCache(function)
+    compiled._cache = OwnCache(function)
     return compiled

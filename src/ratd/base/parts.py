@@ -8,11 +8,10 @@ called from compiled code, which numba compiles anew for each combination of par
 import inspect
 
 from numba.core import types
-from numba.core.caching import FunctionCache
 from numba.core.errors import TypingError
 from numba.extending import overload_method
 
-__all__ = ["OwnPartsCache", "part"]
+__all__ = ["part"]
 
 FLAGS = dict(error_model="numpy", fastmath={"contract"}, nogil=True)
 """error_model: a division by zero gives inf, as in numpy; the check for it would block vectorisation. contract: a*b + c
@@ -56,22 +55,3 @@ def _offer(name, signature):
     # a tuple whose fields are all of one type is of another kind to numba
     for kind in (types.NamedTuple, types.NamedUniTuple):
         overload_method(kind, name, jit_options=FLAGS)(choose)
-
-
-class OwnPartsCache(FunctionCache):
-    """Compiled code on disk, but not that of parts from outside the package: it would not notice when they change."""
-
-    def load_overload(self, sig, target_context):
-        return None if _foreign(sig) else super().load_overload(sig, target_context)
-
-    def save_overload(self, sig, data):
-        if not _foreign(sig):
-            super().save_overload(sig, data)
-
-
-def _foreign(kinds):
-    for kind in kinds:
-        if isinstance(kind, types.NamedTuple | types.NamedUniTuple):
-            if not kind.instance_class.__module__.startswith("ratd.") or _foreign(kind):
-                return True
-    return False
