@@ -211,7 +211,7 @@ def test_findings_are_medians_by_type_and_size():
     assert found["lammps_spin_up.BA quarter"].value == pytest.approx(0.95)
     assert found["lammps_spin_up.300 nm first driven"].value == pytest.approx(0.8 / 1.1)
     assert found["lammps_spin_up.all first waits"].value == pytest.approx(1.1)
-    assert found["lammps_spin_up.classes first"] == pytest.approx(0.2)
+    assert found["lammps_spin_up.twice first"] == ", ".join(3 * ["BA 1.00 and 1.20"])
     assert found["lammps_spin_up.BA first grains"] == 6
 
 

@@ -54,3 +54,22 @@ def test_nothing_presses_any_more_when_no_work_has_come_back_for_long():
 def test_rows_make_a_file_of_the_check(rows, tmp_path):
     io.write(tmp_path / "a.nc", as_dataset(rows, spring_back.KIND), spring_back.KIND)
     assert io.read(tmp_path / "a.nc", spring_back.KIND).sizes["case"] == len(rows)
+
+
+def test_a_spring_gives_back_all_and_friction_nothing():
+    """Two clusters whose springs gave back a half of what they held, of as much work; friction took a tenth of that."""
+    rows = []
+    for seed, size in ((0, 1.0), (1, 3.0)):
+        own = {"seed": seed, "until_phi": 0.1}
+        into = [(0.04, 0.1, 0.1), (0.051, 1.0, 0.9), (0.1, 2.0, 2.0)]
+        out = [(0.09, -0.5, 1.4, 0.02), (0.08, -1.0, 0.9, 0.1), (0.07, -0.8, 1.1, 0.2)]
+        for phi, work, held in into:
+            rows.append(own | dict(way="in", phi=phi, work=size * work, rolling=size * held, twisting=0.0, lost=0.0))
+        for phi, work, held, lost in out:
+            springs = dict(rolling=0.0, twisting=size * held)
+            rows.append(own | dict(way="out", phi=phi, work=size * work, lost=size * lost) | springs)
+    found = {name.removeprefix("springs."): value for name, value in of_springs(pd.DataFrame(rows)).items()}
+    assert found.pop("n_0.1") == 2
+    wanted = {"back": 0.5, "of_held": 0.5, "held": 1.0, "last": 1.0, "friction": 0.1, "kept": 0.45, "until": 0.8}
+    for name, value in wanted.items():
+        assert found[f"{name}_0.1"] == pytest.approx((value, 0.0), abs=1e-12), name

@@ -90,7 +90,7 @@ def verdict(holds):
     return "met" if holds else "missed"
 
 
-def _decided(found, within, near=1.0):
+def decided(found, within, near=1.0):
     """Verdict on numbers that should be within so much of another: open where one is `SIGMAS` errors from the edge."""
     off = [abs(each.value - near) for each in found]
     errors = [SIGMAS * each.error for each in found]
@@ -219,7 +219,7 @@ def of_collision_step(table):
         values[f"collision_step.{column}"] = Measured(*mean_of(change.groupby(GRAIN).mean().to_numpy()))
         values[f"collision_step.{column} scatter"] = change.std(ddof=1)
         values[f"collision_step.{column} mean"] = by_step[column][longest].mean()
-    return values | {"collision_step.verdict": _decided([values["collision_step.N_s"]], STEPPED, near=0.0)}
+    return values | {"collision_step.verdict": decided([values["collision_step.N_s"]], STEPPED, near=0.0)}
 
 
 def balances(table):
@@ -263,9 +263,9 @@ def of_compression(table):
     contacts = [found[f"compression.n_contacts_{low:g}"] for low in EDGES[:-1]]
     pressure = [found[f"compression.pressure_{low:g}"] for low in EDGES[:-1]]
     return found | {
-        "compression.verdict": _decided(contacts, CONTACTS),
-        "compression.pressure verdict": _decided(pressure[:2], PRESSED),
-        "compression.dense verdict": _decided(pressure[2:], ALIKE),
+        "compression.verdict": decided(contacts, CONTACTS),
+        "compression.pressure verdict": decided(pressure[:2], PRESSED),
+        "compression.dense verdict": decided(pressure[2:], ALIKE),
     }
 
 
@@ -273,7 +273,7 @@ def of_dense(table):
     """Dense clusters beside LAMMPS, see `ratd.experiments.compression.beside_lammps.of_dense`."""
     found = dense_over(table)
     bins = ("untwisted_0.05", "untwisted_0.1", "limits_0.1")
-    return found | {"dense.verdict": _decided([found[f"dense.pressure_{pair}"] for pair in bins], ALIKE)}
+    return found | {"dense.verdict": decided([found[f"dense.pressure_{pair}"] for pair in bins], ALIKE)}
 
 
 def of_box_at_rest(table):
@@ -360,7 +360,10 @@ def of_damping(table):
     worst = max(abs(median_of(ratios(waiting, mark, (9, 1), [])["ratio"])["median"] - 1.0) for mark in marks)
     values = {"damping.waiting worst": worst, "damping.verdict": verdict(worst < SHIFTED)}
     values["damping.printed"] = VISCOUS_EFFECT[1]
-    values["damping.grains"] = len(waiting.groupby(GRAIN))
+    for kind, part in waiting.groupby("type"):
+        values[f"damping.{kind} grains"] = len(part.groupby(GRAIN))
+    disr = np.abs(np.log(ratios(waiting, "omega_disr", (9, 1), [])["ratio"]))
+    values |= {"damping.waiting disr": np.exp(disr.max()), "damping.waiting disr off": int((disr > SHIFTED).sum())}
     dense = table[table["type"] == "BAM2"]
     rate = ratios(dense[dense["study"] == RATE], "omega_disr", (9, 5), ["epsilon"])
     for epsilon in (rate["epsilon"].min(), rate["epsilon"].max()):

@@ -1,7 +1,7 @@
 """What docs/validation.md tells of growth: slots and tables, from the table of that check and the reference."""
 
 import numpy as np
-from scipy.stats import chi2, kstest
+from scipy.stats import chi2, kstest, norm
 
 from ratd.validation.findings import CHANCE, verdict
 from ratd.validation.growth import NOT
@@ -74,6 +74,7 @@ def of_growth(table, reference):
     """Aggregates as grown, and the directions of arrivals."""
     rows = grown(table, reference)
     sigmas = np.array([row["sigmas"] for row in rows])
+    one_way = np.array([row["sigmas"] for row in rows if row["type"] == "BAM2"])
     alike = float(chi2.sf(np.sum(sigmas**2), len(sigmas)))
     chances = [kstest(values, "uniform").pvalue for values in arrival_values(table).values()]
     found = {(row["type"], row["a_eff_nm"], row["migration"]): row["porosity"] for row in migrations(table)}
@@ -85,6 +86,7 @@ def of_growth(table, reference):
         "growth.apart": max(abs(row["porosity"] - row["reference"]) for row in rows),
         "growth.lower": float(np.mean([row["reference"] - row["porosity"] for row in rows])),
         "growth.alike": alike,
+        "growth.BAM2 alike": float(2.0 * norm.sf(abs(one_way.sum()) / np.sqrt(len(one_way)))),
         "growth.verdict": verdict(alike > CHANCE),
         "growth.arrivals": int((table["study"] == "arrivals").sum()),
         "growth.chance": min(chances),

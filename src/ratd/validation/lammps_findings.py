@@ -67,6 +67,8 @@ def thresholds(table):
 def of_lammps(table):
     """Slots of the check against LAMMPS: ``lammps.WAY MARK ...`` for the ways of `WAYS`, and forces.
 
+    ``lammps.farthest``: by how many times the two codes differ in single grains at most, of all ways and marks.
+
     Parameters
     ----------
     table : pandas.DataFrame
@@ -88,6 +90,7 @@ def of_lammps(table):
     }
     found = thresholds(table)
     values["lammps.grains"] = len(found.groupby(GRAIN))
+    values["lammps.farthest"] = np.exp(np.abs(np.log(found["ratio"])).max())
     monomers = table.loc[table["study"] != "force", "n_monomers"]
     values["lammps.fewest"], values["lammps.most"] = int(monomers.min()), int(monomers.max())
     for (way, mark), part in found.groupby(["way", "mark"]):

@@ -401,12 +401,13 @@ def findings(table):
         the geometric mean; with ``driven`` behind it,
         over ratd driven alike; with ``waits`` behind it, of ratd driven over the spin-up of production. Errors by
         bootstrap over grains, of at least three; ``GROUP MARK grains`` is their number. Of a grain that was driven with
-        both sorts of types that with own types counts, and ``classes MARK`` is the greatest difference of the other.
+        both sorts of types that with own types counts, and ``twice MARK`` has both, with own types first.
         ``later quarter within`` and ``known``: of the quarters that are not lost with the first mass.
         ``verdict``: whether the median of all at the first loss is within `NEAR`, ``limit.median``; ``GROUP MARK
         least`` and so on: single grains, see `ratd.validation.lammps_findings.of_each`.
     """
-    table = table.assign(size=[f"{size / NM:.0f} nm" for size in table["a_eff"]])
+    size = [f"{size / NM:.0f} nm" for size in table["a_eff"]]
+    table = table.assign(size=size, ratio=table["LAMMPS"] / table["waits"])
     one = one_each(table)
     values = {
         "lammps_spin_up.grains": len(one.drop_duplicates(GRAIN)),
@@ -426,10 +427,15 @@ def findings(table):
             values[f"{slot} waits"] = median(own["ratd"] / own["waits"])
             values[f"{slot} grains"] = int(np.isfinite(own["ratio"]).sum())
             values |= of_each(slot, own["ratio"].dropna())
-        both_types = table[table["mark"] == mark].pivot_table(index=GRAIN, columns="types", values="LAMMPS")
+        both_types = table[table["mark"] == mark].pivot_table(index=GRAIN, columns="types", values="ratio")
         if {"own", "classes"} <= set(both_types):
-            differs = (both_types["classes"] / both_types["own"] - 1.0).abs().max()
-            values[f"lammps_spin_up.classes {short}"] = float(differs)
+            both_types = both_types.dropna()
+            values[f"lammps_spin_up.twice {short}"] = ", ".join(
+                f"{kind} {own:.2f} and {classes:.2f}"
+                for kind, own, classes in zip(
+                    both_types.index.get_level_values("type"), both_types["own"], both_types["classes"], strict=True
+                )
+            )
     values |= of_each("lammps_spin_up.later quarter", _later(one)["ratio"])
     off = abs(values["lammps_spin_up.all first"].value - 1.0)
     values |= {"limit.median": NEAR, "lammps_spin_up.verdict": "met" if off < NEAR else "missed"}

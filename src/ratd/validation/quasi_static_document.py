@@ -16,7 +16,7 @@ from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
-from ratd.experiments.spin_up.grain_table import read_spun_up
+from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
@@ -89,6 +89,8 @@ def redraw(folder=".", into=None):
     values = findings(table, looks)
     if any((folder / ENSEMBLE).glob("*.nc")):
         values |= against(read_spun_up(folder / ENSEMBLE), read_table(folder / BEFORE))
+        files = spun_up_files(folder / ENSEMBLE)
+        values["ensemble.smaller_steps"] = sum(int((file["smaller_steps"] > 0).sum()) for file in files)
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
     write_text(into / DOCUMENT, fill(template, values, str(TEMPLATE)))
 
@@ -138,6 +140,8 @@ def findings(table, looks):
         off = (part["median"] - 1.0).abs()
         worst = part.loc[off.idxmax()]
         values[f"worst {mark}"] = Measured(off.max(), worst["error"])
+        values[f"sure {mark}"] = int((off + 2.0 * part["error"] < KNOWN).sum())
+        values[f"beyond {mark}"] = int((off - 2.0 * part["error"] > KNOWN).sum())
     unsure = every_class[(every_class["mark"] == "omega_mass_75") & ~known]
     values["few"] = int((unsure["n"] < ENOUGH).sum())
     farthest = unsure.loc[(unsure["median"] - 1.0).abs().idxmax()]
@@ -181,7 +185,9 @@ def against(now, before):
         for name, (low, high) in SIZES.items():
             part = pairs[(pairs["type"] == kind) & pairs["a_eff"].between(low * NM, high * NM)]
             for mark in MARKS:
-                values[f"ensemble.{kind} {name} {mark}"] = _text(median_of(part[mark] / part[f"{mark}_before"]))
+                ratio = part[mark] / part[f"{mark}_before"]
+                values[f"ensemble.{kind} {name} {mark}"] = _text(median_of(ratio))
+                values[f"ensemble.{kind} {name} mean {mark}"] = geometric_mean(ratio)
     return values
 
 
@@ -259,9 +265,12 @@ def _single(table):
         pairs = _paired(hard, own, vary, value)
         off = (pairs["omega_mass_75"] / pairs["omega_mass_75_own"] - 1.0).abs().dropna()
         if len(off) >= ENOUGH:
-            far[vary, value] = off.quantile(5.0 / 6.0), len(off)
+            rng = np.random.default_rng(0)
+            drawn = [np.quantile(rng.choice(off, len(off)), 5.0 / 6.0) for _ in range(1000)]
+            far[vary, value] = Measured(off.quantile(5.0 / 6.0), float(np.std(drawn))), len(off)
     drag, grains = far.pop(("drag", 0.3))
-    return {"single drag": drag, "single drag grains": grains, "single": max(off for off, _ in far.values())}
+    worst, others = max(far.values(), key=lambda found: found[0].value)
+    return {"single drag": drag, "single drag grains": grains, "single": worst, "single grains": others}
 
 
 def _same(table, own):
@@ -311,7 +320,7 @@ def _torque(table, own):
     chaos = _paired(table, own, "moved", 1.0)
     moved = chaos["omega_mass_75"] / chaos["omega_mass_75_own"]
     values["moved hard"] = ((moved[is_hard(chaos)] - 1.0).abs() > 0.01).mean()
-    values["moved differs"] = ((moved - 1.0).abs() > 0.02).mean()
+    values["moved differs"] = ((moved.dropna() - 1.0).abs() > 0.02).mean()
     return values
 
 

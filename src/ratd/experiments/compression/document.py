@@ -116,8 +116,8 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
         Pulled clusters.
     grains : dict or None
         See `ratd.experiments.compression.tension_findings.spun_up`.
-    lammps, box, dense : pandas.DataFrame or None
-        See `ratd.experiments.compression.beside_lammps`.
+    lammps, box, dense, springs : pandas.DataFrame or None
+        See `ratd.experiments.compression.beside_lammps` and `ratd.experiments.compression.springs`.
     """
     data = Path(data)
     sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
@@ -127,7 +127,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     entries = io.read(tension, "tension_set") if tension.is_file() else None
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
     beside = []
-    for name in ("compression", "box_at_rest", "dense"):
+    for name in ("compression", "box_at_rest", "dense", "spring_back"):
         path = Path(peer, f"{name}.nc")
         beside.append(io.read(path, f"validation_{name}").to_dataframe() if path.is_file() else None)
     return sets, entries, grains, *beside

@@ -20,6 +20,7 @@ from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lamm
 from ratd.experiments.compression.losses import WAYS, lost_from, overtakes, part_of_work, share_at, total_at
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SLOW_RATES, SMALL, of_pairs
+from ratd.experiments.compression.springs import of_springs
 from ratd.experiments.compression.static import (
     box_rate,
     face_speed,
@@ -357,7 +358,7 @@ def worst_balance(sets, values):
     return {"long_steps.residual": max(residuals)} if residuals else {}
 
 
-def findings(sets, entries, spun, lammps=None, box=None, dense=None):
+def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -374,6 +375,8 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         See `ratd.experiments.compression.beside_lammps.of_box`.
     dense : pandas.DataFrame, optional
         See `ratd.experiments.compression.beside_lammps.of_dense`.
+    springs : pandas.DataFrame, optional
+        See `ratd.experiments.compression.springs.of_springs`.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
@@ -412,6 +415,8 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None):
         values |= of_box(box)
     if dense is not None:
         values |= of_dense(dense)
+    if springs is not None:
+        values |= of_springs(springs)
     if spun is not None:
         values |= of_spun(spun)
     return values | verdicts(values, sets)

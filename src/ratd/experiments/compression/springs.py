@@ -21,7 +21,9 @@ def of_springs(table):
         For each filling factor PHI up to which clusters were squeezed: ``springs.back_PHI``, the greatest work that
         the box gets back over what it did; ``springs.of_held_PHI``, over what the springs of rolling and twisting held
         at its turn; ``springs.held_PHI``, what they held over the work of the box; ``springs.last_PHI``, what comes
-        back over the work of the box since half the filling factor; ``springs.until_PHI``, the filling factor at which
+        back over the work of the box since half the filling factor; ``springs.friction_PHI``, what friction takes
+        meanwhile over what comes back; ``springs.kept_PHI``, what the springs hold then over what they held at the
+        turn; ``springs.until_PHI``, the filling factor at which
         nothing presses any more over that of the turn; ``springs.n_PHI``, clusters. All of sums over clusters.
     """
     found = {}
@@ -39,6 +41,8 @@ RATIOS = {
     "of_held": ("back", "held"),
     "held": ("held", "work"),
     "last": ("back", "last"),
+    "friction": ("lost", "back"),
+    "kept": ("kept", "held"),
     "until": ("until", "turn"),
 }
 """Slot -> the two numbers of `_of_cluster` whose means are divided."""
@@ -55,6 +59,8 @@ def _of_cluster(rows):
         "last": end["work"] - half["work"],
         "held": end["rolling"] + end["twisting"],
         "back": -gone["work"],
+        "lost": gone["lost"],
+        "kept": gone["rolling"] + gone["twisting"],
         "turn": end["phi"],
         "until": gone["phi"],
     }

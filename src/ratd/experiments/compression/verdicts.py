@@ -61,6 +61,9 @@ def verdicts(values, sets):
     if slow and set(sizes) <= set(values):
         most = max(abs(ratio - 1.0) for ratio in [*slow, *(values[name].value for name in sizes)])
         found["steady"] = "some 15 %" if most < 0.16 else "more"
+    friction = [own.value for name, own in values.items() if name.startswith("springs.friction_")]
+    if friction:
+        found["springs_back"] = "elastic" if max(friction) < 0.1 else "not elastic"
     at_02 = [f"{name}.ratio_0.2" for name in ("xi_32", HIGH, "xi_2", "silicate_16384")]
     if set(at_02) <= set(values):
         much, some, *little = (values[name].value for name in at_02)
