@@ -9,11 +9,22 @@ from ratd.aggregates.strength import (
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
+    power_kataoka2013,
+    power_tatsuuma2023,
     rolling_pressure,
     sound_speed_kataoka2013,
 )
 
 ICE, SILICATE = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
+
+
+def test_the_powers_are_those_of_the_laws():
+    """Of D = 2 the printed third power; of the law with a greatest filling factor the numerical derivative."""
+    assert power_kataoka2013(2.0) == 3.0 and power_kataoka2013(1.5) == 2.0
+    for phi, end in ((0.1, 0.74), (0.4, 0.65)):
+        around = phi * np.exp([-1e-5, 1e-5])
+        slope = np.diff(np.log(compressive_strength_tatsuuma2023(around, 1.0, end)))[0] / 2e-5
+        assert power_tatsuuma2023(phi, end) == pytest.approx(slope, rel=1e-6)
 
 
 def test_p_0_is_that_of_the_paper():

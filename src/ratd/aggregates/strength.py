@@ -58,6 +58,23 @@ def compressive_strength_tatsuuma2023(filling_factor, rolling_pressure, largest=
     return rolling_pressure / (1.0 / np.asarray(filling_factor) - 1.0 / largest) ** 3
 
 
+def power_kataoka2013(dimension):
+    """Power of phi with which P goes where the monomers of a cluster go as this power of its radius: 3/(3 - D).
+
+    A part of the radius r is pressed as soon as it fills its share of the box, phi ~ r^(D - 3), by E_roll/r^3.
+
+    References
+    ----------
+    Kataoka et al. (2013), A&A 554, A4, Sect. 4, who have D = 2 and so the power 3; derived here for another D.
+    """
+    return 3.0 / (3.0 - dimension)
+
+
+def power_tatsuuma2023(filling_factor, largest=PHI_MAX):
+    """d ln P/d ln phi of `compressive_strength_tatsuuma2023`, 3/(1 - phi/phi_max)."""
+    return 3.0 / (1.0 - np.asarray(filling_factor) / largest)
+
+
 def sound_speed_kataoka2013(filling_factor, rolling_pressure, density):
     """Effective speed of sound sqrt(P_0/(4/3 pi rho_0)) phi [m/s].
 

@@ -170,9 +170,6 @@ def values(tables):
     found |= lammps_single.findings(tables["lammps_single"])
     scheme = quasi_static_document.findings(tables["quasi_static"], tables["remnant"])
     found |= {f"scheme.{name}": value for name, value in scheme.items()}
-    for mark in ("omega_first_loss", "omega_mass_75"):
-        sure, beyond, known = (scheme[f"{name} {mark}"] for name in ("sure", "beyond", "classes"))
-        found[f"scheme.{mark} verdict"] = "missed" if beyond else "met" if sure == known else "open"
     found["scheme.all verdict"] = "met" if scheme["classes omega_mass_75"] == scheme["all classes"] else "missed"
     quarter = [found["lammps_spin_up.all quarter"]]
     found["lammps_spin_up.quarter verdict"] = findings.decided(quarter, lammps_spin_up.NEAR)

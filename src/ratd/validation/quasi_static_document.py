@@ -16,13 +16,13 @@ from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, size_key
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
-from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import remnant
-from ratd.validation.findings import GRAIN
+from ratd.validation.findings import GRAIN, decided
 from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
 
 __all__ = ["collect", "findings", "main", "redraw"]
@@ -88,8 +88,8 @@ def redraw(folder=".", into=None):
     save(turning(looks), into / FIGURES / "remnant.png")
     values = findings(table, looks)
     if any((folder / ENSEMBLE).glob("*.nc")):
-        values |= against(read_spun_up(folder / ENSEMBLE), read_table(folder / BEFORE))
         files = spun_up_files(folder / ENSEMBLE)
+        values |= against(spun_up_table(files), read_table(folder / BEFORE))
         values["ensemble.smaller_steps"] = sum(int((file["smaller_steps"] > 0).sum()) for file in files)
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
     write_text(into / DOCUMENT, fill(template, values, str(TEMPLATE)))
@@ -140,8 +140,9 @@ def findings(table, looks):
         off = (part["median"] - 1.0).abs()
         worst = part.loc[off.idxmax()]
         values[f"worst {mark}"] = Measured(off.max(), worst["error"])
-        values[f"sure {mark}"] = int((off + 2.0 * part["error"] < KNOWN).sum())
-        values[f"beyond {mark}"] = int((off - 2.0 * part["error"] > KNOWN).sum())
+        each = [Measured(*row) for row in part[["median", "error"]].itertuples(index=False)]
+        values[f"sure {mark}"] = sum(decided([one], KNOWN) == "met" for one in each)
+        values[f"verdict {mark}"] = decided(each, KNOWN)
     unsure = every_class[(every_class["mark"] == "omega_mass_75") & ~known]
     values["few"] = int((unsure["n"] < ENOUGH).sum())
     farthest = unsure.loc[(unsure["median"] - 1.0).abs().idxmax()]

@@ -8,14 +8,13 @@ meanwhile is the work that it had stored. What friction has taken does not come 
 import numpy as np
 
 from ratd.aggregates.clusters import grow_bcca
-from ratd.experiments.compression.run import LONG_STEPS, Cluster, compress, compression_law
+from ratd.experiments.compression.run import LONG_STEPS, compress, compression_law
 from ratd.experiments.compression.static import box_rate
 from ratd.experiments.compression.steps import integrators
 from ratd.experiments.compression.strain import COLUMNS as RECORDED
 from ratd.experiments.compression.strain import Parts, state_of, strain, strain_dataset
 from ratd.experiments.relax import start_anew
 from ratd.geometry.box import periodic
-from ratd.laws.contact_constants import rolling_energy
 from ratd.validation.tables import table_kind
 
 COLUMNS = {
@@ -65,9 +64,7 @@ def compute(settings, progress=None):
     released = _released(squeezed, cluster.material, settings)
     names = ("material", "seed", "strain_rate", "until_phi")
     own = {name: settings[name] for name in names} | {"n_monomers": settings["n"]}
-    material = cluster.material
-    about = material.surface_energy, material.critical_rolling_displacement
-    unit = rolling_energy(0.5 * Cluster(cluster).radius, *about)
+    unit = squeezed.attrs["rolling_pressure"] * squeezed.attrs["monomer_radius"] ** 3
     return [own | row for way, run in (("in", squeezed), ("out", released)) for row in _rows(way, run, unit)]
 
 

@@ -12,6 +12,7 @@ from ratd.experiments.collision.document_plan import figure_settings
 from ratd.experiments.collision.document_samples import (
     at_own_v_frag,
     by_sample,
+    change_by,
     halved,
     largest,
     of_same_samples,
@@ -30,7 +31,7 @@ from ratd.experiments.collision.fragmentation import (
 )
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.printed import PRINTED_THRESHOLDS, RADII
-from ratd.experiments.collision.tables import GRID
+from ratd.experiments.collision.tables import threshold_error
 from ratd.experiments.collision.thresholds import head_on, is_close, of_paper, of_same_energy
 from ratd.laws.dmt_with_friction import PERIOD_PARTS
 from ratd.pipeline import io
@@ -298,13 +299,11 @@ def _same_collisions(table):
             for column in ("X", "N_s"):
                 key = f"{column} {law} {cluster} {velocity:g}"
                 found[f"same {key}"] = with_error(*mean_and_error(part, column))
-                both = part.merge(table[table["law"] == law], on=alike, suffixes=("", " again"))
-                both = both.assign(change=both[f"{column} again"] - both[column])
-                found[f"change {key}"] = with_error(*mean_and_error(both, "change"))
+                pairs = change_by(law, table, column, cluster)
+                found[f"change {key}"] = with_error(*mean_and_error(pairs[pairs["velocity"] == velocity], "change"))
         for cluster, part in own.groupby("cluster"):
             row = fragmentation_velocity(part)
-            error = np.hypot(row["error"], GRID * (row["above"] - row["below"]))
-            found[f"same v_frag {law} {cluster}"] = with_error(row["velocity"], error, 1)
+            found[f"same v_frag {law} {cluster}"] = with_error(row["velocity"], threshold_error(row), 1)
     return found
 
 

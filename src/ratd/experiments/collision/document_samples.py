@@ -21,6 +21,7 @@ __all__ = [
     "at_own_v_frag",
     "by_sample",
     "chance_of_change",
+    "change_by",
     "change_by_half",
     "halved",
     "largest",
@@ -183,12 +184,17 @@ def chance_of_change(pairs):
     return float(2.0 * student.sf(abs(mean) / error, (samples if samples > 1 else len(pairs)) - 1))
 
 
-def change_by_half(table, column, cluster):
-    """Central collisions of a cluster that were done again with half the step, and the ``change`` of a column."""
+def change_by(law, table, column, cluster):
+    """Central collisions of a cluster that were done again under another law, and the ``change`` of a column."""
     own = table[(table["impact_parameter"] == 0) & (table["cluster"] == cluster)]
-    half, whole = (own[own["law"] == law] for law in ("half_step", "velocity"))
-    pairs = half.merge(whole, on=["velocity", "sample", "seed"], suffixes=("", " whole"))
-    return pairs.assign(change=pairs[column] - pairs[f"{column} whole"])
+    again, before = (own[own["law"] == name] for name in (law, "velocity"))
+    pairs = again.merge(before, on=["velocity", "sample", "seed"], suffixes=("", " before"))
+    return pairs.assign(change=pairs[column] - pairs[f"{column} before"])
+
+
+def change_by_half(table, column, cluster):
+    """The same of collisions that were done again with half the step."""
+    return change_by("half_step", table, column, cluster)
 
 
 def largest(table):

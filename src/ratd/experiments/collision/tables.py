@@ -24,6 +24,7 @@ __all__ = [
     "mean_energy",
     "read_collisions",
     "series_of",
+    "threshold_error",
     "threshold_table",
 ]
 
@@ -196,6 +197,11 @@ def mean_energy(series):
     return series[0][1]["time"].to_numpy(), np.mean(energies, axis=0)
 
 
+def threshold_error(threshold):
+    """Standard error of a `fragmentation_velocity` [m/s], with what the distance of the velocities leaves open."""
+    return np.hypot(threshold["error"], GRID * (threshold["above"] - threshold["below"]))
+
+
 def threshold_table(table, materials, samples=2000):
     """Fragmentation velocities of all laws, clusters and impact parameters of a table.
 
@@ -223,7 +229,7 @@ def threshold_table(table, materials, samples=2000):
             name: one[name] for name in ("damping_time", "surface_energy", "friction")
         }
         row |= {"radius": radius, **threshold, "slowest": part["velocity"].min(), "fastest": part["velocity"].max()}
-        row["error"] = np.hypot(row["error"], GRID * (row["above"] - row["below"]))
+        row["error"] = threshold_error(threshold)
         row |= {"collisions": len(part), "sticking_velocity": np.nan, "energy_per_contact": np.nan}
         if equal:
             material = materials[one["law"]]

@@ -6,10 +6,11 @@ import numpy as np
 
 from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.aggregates.strength import (
-    PHI_MAX,
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
+    power_kataoka2013,
+    power_tatsuuma2023,
     rolling_pressure,
     sound_speed_kataoka2013,
 )
@@ -179,14 +180,13 @@ def _with_limit(table, high):
     found = dict(zip(("limit_c", "limit_phi"), several(fit_with_limit(table, high=high)), strict=True))
     for shorter in (0.3, 0.4):
         found[f"limit_phi_{shorter:g}"] = several(fit_with_limit(table, high=shorter))[1]
+    limit = found["limit_phi"].value
     for phi in AT:
         found[f"tatsuuma_{phi:g}"] = float(compressive_strength_tatsuuma2023(phi, 1.0) / phi**3)
-        limit = found["limit_phi"].value
         fitted = compressive_strength_tatsuuma2023(phi, 1.0, limit)
         found[f"fitted_{phi:g}"] = float(found["limit_c"].value * fitted / phi**3)
-        # d ln/d ln phi of (1/phi - 1/limit)^-3
-        for name, end in (("fitted", limit), ("tatsuuma", PHI_MAX)):
-            found[f"{name}_power_{phi:g}"] = 3.0 / (1.0 - phi / end)
+        found[f"tatsuuma_power_{phi:g}"] = float(power_tatsuuma2023(phi))
+        found[f"fitted_power_{phi:g}"] = float(power_tatsuuma2023(phi, limit))
     return found
 
 
@@ -205,11 +205,10 @@ def of_sizes(sets):
         for name in ("n_monomers", "mean_square_gyration", "mean_square_gyration_error")
     )
     # N goes as the D-th power of the radius; r_g^2 as N^(2/D)
-    weight = square / error
-    slope, _ = np.polyfit(np.log(n), np.log(square), 1, w=weight)
-    spread = math.sqrt(np.polyfit(np.log(n), np.log(square), 1, w=weight, cov="unscaled")[1][0, 0])
-    D = Measured(2.0 / slope, 2.0 / slope**2 * spread)
-    return {"dimension": D, "derived_power": Measured(3.0 / (3.0 - D.value), 3.0 / (3.0 - D.value) ** 2 * D.error)}
+    (slope, _), cover = np.polyfit(np.log(n), np.log(square), 1, w=square / error, cov="unscaled")
+    D = Measured(2.0 / slope, 2.0 / slope**2 * math.sqrt(cover[0, 0]))
+    power = power_kataoka2013(D.value)
+    return {"dimension": D, "derived_power": Measured(power, power**2 / 3.0 * D.error)}
 
 
 def of_rates(sets, values):
@@ -251,7 +250,7 @@ def of_monomers(equal, tables):
 
 def of_steps(tables):
     """Long steps over explicit ones, of the same clusters: geometric mean of the pressure over the range of the fit,
-    work, contacts, losses and steps up to 0.2, and what is damped from the beginning of that range to there.
+    work, contacts and losses up to `STEPS_END`, what is damped from the beginning of that range to there, and steps.
 
     Parameters
     ----------

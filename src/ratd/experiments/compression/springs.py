@@ -6,6 +6,17 @@ from ratd.experiments.compression.strength import measured, of_means
 
 __all__ = ["of_springs"]
 
+RATIOS = {
+    "back": ("back", "work"),
+    "of_held": ("back", "held"),
+    "held": ("held", "work"),
+    "last": ("back", "last"),
+    "friction": ("lost", "back"),
+    "kept": ("kept", "held"),
+    "until": ("until", "turn"),
+}
+"""Slot -> the two numbers of `_of_cluster` whose means are divided."""
+
 
 def of_springs(table):
     """Work that comes back, of the work that the box did and of what the springs held, in means over clusters.
@@ -34,18 +45,6 @@ def of_springs(table):
             pairs = each[[over, under]].to_numpy()
             found[f"springs.{name}_{phi:g}"] = measured(of_means(pairs, lambda mean: mean[0] / mean[1]))
     return found
-
-
-RATIOS = {
-    "back": ("back", "work"),
-    "of_held": ("back", "held"),
-    "held": ("held", "work"),
-    "last": ("back", "last"),
-    "friction": ("lost", "back"),
-    "kept": ("kept", "held"),
-    "until": ("until", "turn"),
-}
-"""Slot -> the two numbers of `_of_cluster` whose means are divided."""
 
 
 def _of_cluster(rows):
