@@ -23,7 +23,7 @@ from ratd.experiments.spin_up.findings.beside import (
     recomputed,
 )
 from ratd.experiments.spin_up.findings.claims import all_of, claims, grown_claims, is_above, is_below, is_within
-from ratd.experiments.spin_up.findings.ensemble import of_drive, strength_omega, what_contacts_hold
+from ratd.experiments.spin_up.findings.ensemble import MARK, of_drive, strength_omega, what_contacts_hold
 from ratd.experiments.spin_up.findings.fragments import of_all_that_left
 from ratd.experiments.spin_up.findings.radiation import NONE, of_radiation
 from ratd.pictures.style import save
@@ -160,6 +160,11 @@ def test_grains_that_were_computed_anew_are_compared_with_themselves():
     values = recomputed(older, newer)
     assert values["check.n"] == 9 and values["check.ratio"].value == pytest.approx(1.01)
     assert values["check.range"] == "1.010 to 1.010"
+    assert (values["check.largest"], values["check.larger"], values["check.ratios"]) == (300.0, 0, 9)
+    # of a few larger ones it is said that they are few, and those that never lose a quarter are counted
+    few = pd.concat([newer, grains(lambda kind, nm: 1e8, sizes=(400,)).iloc[:2].assign(omega_mass_75=np.nan)])
+    values = recomputed(pd.concat([older, grains(lambda kind, nm: 1e8, sizes=(400,))]), few)
+    assert [values[f"check.{name}"] for name in ("n", "ratios", "largest", "larger")] == [11, 9, 300.0, 2]
 
 
 def test_the_tables_of_the_materials_show_used_and_printed():
@@ -217,6 +222,27 @@ def test_shapes_are_judged_by_what_grains_change(data):
         for own in (3.0, 2.0, 1.5)
     ]
     assert found == ["no", "open", "yes"]
+    # the greatest b/a is that of the grains of Fig. 6
+    shown = (data.driven["material"] == "a-C") & data.driven["nm"].round().isin((200, 350, 500)) & ~ba
+    most = told(data, axis_a_disr=1.0, axis_b_disr=np.where(shown, 4.5, 20.0), axis_c_disr=30.0)
+    assert most["d.most oblate"] == 4.5 and most["d.holds b/a"] == "yes"
+
+
+def test_cells_in_which_ba_breaks_first_are_told_with_those_where_that_is_sure(data):
+    ba, jitter = data.driven["type"] == "BA", 1.0 + 0.1 * (data.driven["seed"] % 3 - 1)
+    cells = len(data.driven.groupby(["material", data.driven["nm"].round()]))
+    for ratio, surely in ((0.8, cells), (0.98, 0)):
+        found = told(data, omega_disr=np.where(ba, ratio, 1.0) * jitter)
+        assert found["d.BA first"] == cells and found["d.BA first surely"] == surely
+
+
+def test_cells_count_alike_in_what_is_told_of_a_type(data):
+    """Two sizes of three grains a cell at 1, one size of thirty at 2: the median is 1."""
+    nm, seed = data.driven["nm"].round(), data.driven["seed"]
+    part = data.driven[(nm.isin((300, 400)) & (seed < 3)) | (nm == 500)]
+    few = data.fragments[document.DRIVEN]
+    found = claims("d", part.assign(omega_disr=np.where(part["nm"].round() == 500, 2.0, 1.0) * part[MARK]), few)
+    assert found["d.disr over quarter BA"].value == 1.0
 
 
 def test_the_last_contact_is_beside_the_first_loss(data):
@@ -299,6 +325,9 @@ def test_the_rolling_limit_is_judged_at_all_its_values(data):
     assert found["ways.holds viscous"] == "no"
     rolls = np.where(np.isclose(table["critical_rolling_displacement"], 3.2e-9, atol=0.0), 1.3, 1.0)
     assert of_ways(table.assign(omega_mass_75_ratio=rolls))["ways.BA xi quarter"].value == pytest.approx(1.3)
+    # as a geometric mean: that of 1 and 1.69
+    some = np.where((rolls == 1.3) & (table["seed"] % 2 == 0), 1.69, 1.0)
+    assert of_ways(table.assign(omega_mass_75_ratio=some))["ways.BA xi quarter"].value == pytest.approx(1.3)
 
 
 def test_grains_in_strong_light_are_beside_the_heat_that_parts_contacts():

@@ -15,7 +15,7 @@ from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.findings.ensemble import MARK
 from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
-from ratd.experiments.spin_up.parameters import effect
+from ratd.experiments.spin_up.parameters import PARAMETERS, effect
 from ratd.experiments.spin_up.printed import FIRST_LOSS, PAIR_ERROR, SPIN_UP, VISCOUS_EFFECT
 from ratd.experiments.spin_up.radiation import grain_temperature, infrared_of, spin_up_time
 from ratd.experiments.spin_up.solid import solid_omega
@@ -43,7 +43,7 @@ def of_ways(table):
     """What the rolling limit and the viscous time do to omega_disr, from the table of Fig. 9 of driven grains.
 
     Of the rolling limits, a type each, the median that is farthest from 1. ``ways.TYPE xi quarter`` is what `ROLLING`
-    does to the mark of the document.
+    does to the mark of the document, as a geometric mean.
     """
     values, held = {}, []
     for kind, rows in effect(table, "xi_c", "omega_disr").groupby("type"):
@@ -52,9 +52,8 @@ def of_ways(table):
         values[f"ways.{kind} xi"] = max(found, key=lambda ratio: (abs(ratio.value - 1.0), ratio.error))
         held += [is_within(ratio, 0.95, 1.05) for ratio in found]
     values["ways.holds xi"] = all_of(held)
-    for row in effect(table, "xi_c", MARK).to_dict("records"):
-        if np.isclose(row["value"], ROLLING, atol=0.0):
-            values[f"ways.{row['type']} xi quarter"] = Measured(row["median"], row["error"])
+    for kind, rows in table[np.isclose(table[PARAMETERS["xi_c"]], ROLLING, atol=0.0)].groupby("type"):
+        values[f"ways.{kind} xi quarter"] = geometric_mean(rows[f"{MARK}_ratio"].dropna())
     time, printed = VISCOUS_EFFECT
     slow = effect(table, "T_vis", "omega_disr")
     (row,) = slow[(slow["type"] == "BAM2") & np.isclose(slow["value"], time, atol=0.0)].to_dict("records")
@@ -173,6 +172,7 @@ def of_formulae(table):
         "formulae.damping mean": geometric_mean(ratios.dropna()),
         "formulae.damping grains": int(ratios.count()),
         "formulae.damping single": f"{ratios.min():.2f} to {ratios.max():.2f}",
+        "formulae.damping gain": float(ratios.max()) - 1.0,
     }
     for (formula, kind), part in table[table["formula"] != OWN].groupby(["formula", "type"]):
         values[f"formulae.{formula} {kind}"] = median(part[f"{MARK}_ratio"])
@@ -180,13 +180,22 @@ def of_formulae(table):
 
 
 def recomputed(older, newer):
-    """Grains of two tables, the newer over the older: how many, median with its error, least and most."""
+    """Grains of two tables, the newer over the older: how many, median with its error, least and most.
+
+    ``check.n`` counts all, ``check.ratios`` those that lose a quarter in both, ``check.larger`` those above
+    ``check.largest`` [nm], the greatest size of which there are most.
+    """
     keys = ["material", "type", "size", "seed"]
     older, newer = (table.assign(size=size_key(table["a_eff"])) for table in (older, newer))
     pairs = newer.merge(older, on=keys, suffixes=("", "_older"))
     ratio = pairs[MARK] / pairs[f"{MARK}_older"]
+    n_older, n = (table["a_eff"].div(NM).round().value_counts() for table in (older, pairs))
+    largest = float(n.index[n > 0.5 * n_older[n.index]].max())
     return {
         "check.n": len(pairs),
+        "check.ratios": int(ratio.count()),
+        "check.largest": largest,
+        "check.larger": int(n[n.index > largest].sum()),
         "check.ratio": median(ratio),
         "check.range": f"{ratio.min():.3f} to {ratio.max():.3f}",
     }

@@ -7,8 +7,9 @@ The rules stand in the document beside the verdicts.
 import math
 
 import numpy as np
+import pandas as pd
 
-from ratd.base.statistics import equal_weights, mean_of, median_of, rank_correlation, slope_error, slope_of
+from ratd.base.statistics import equal_weights, mean_of, rank_correlation, slope_error, slope_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.findings.ensemble import MARK, middle, of_class
@@ -22,10 +23,16 @@ __all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
 BAM = ("BAM1", "BAM2")
 STAYS = 0.05
 """Rise of a porosity over the large grains that is no rise."""
+WHOLE = 0.99
+"""Part of its mass that a grain has which counts as whole."""
 ROUND = 1.7
 """c/b below which most large grains of the paper are."""
 FIGURE_6 = (200, 350, 500)
 """Sizes [nm] of the grains of Fig. 6, of which the paper tells the shapes."""
+SHOWN = "a-C"
+"""Their material."""
+SURE = 2.0
+"""Standard errors of a difference from which on it is no chance."""
 
 
 def is_above(found, limit):
@@ -91,9 +98,13 @@ def _where(letter, table):
     values[f"{letter}.steepest"] = min(slope.value for slope in slopes_above)
     values[f"{letter}.flattest"] = max(slope.value for slope in slopes_above)
     order = table.assign(log=np.log(table["omega_disr"]), size=size_key(table["a_eff"]))
-    means = order.groupby(["material", "type", "size"])["log"].mean().unstack("type")
-    first = (means["BA"] < means["BAM1"]) & (means["BA"] < means["BAM2"])
+    cells = order.groupby(["material", "type", "size"])["log"]
+    means, errors = (each.unstack("type") for each in (cells.mean(), cells.sem()))
+    ahead = pd.DataFrame({kind: means[kind] - means["BA"] for kind in BAM})
+    sure = pd.DataFrame({kind: ahead[kind] > SURE * np.hypot(errors[kind], errors["BA"]) for kind in BAM})
+    first = (ahead > 0.0).all(axis="columns")
     values[f"{letter}.BA first"], values[f"{letter}.BA cells"] = int(first.sum()), len(first)
+    values[f"{letter}.BA first surely"] = int(sure.all(axis="columns").sum())
     values[f"{letter}.holds BA first"] = "yes" if first.all() else "open" if first.mean() > 0.9 else "no"
     return values
 
@@ -110,14 +121,13 @@ def _how(letter, table, fragments):
     near = {kind: _near(table[table["type"] == kind]) for kind in TYPES}
     for kind, share in near.items():
         values[f"{letter}.near quarter {kind}"] = Measured(100 * share.value, 100 * share.error)
-        values[f"{letter}.lost at disr {kind}"] = 100.0 * median_of(lost[table["type"] == kind])["median"]
-    apart = {kind: median((table["omega_disr"] / table[MARK])[table["type"] == kind]) for kind in TYPES}
+        values[f"{letter}.lost at disr {kind}"] = 100.0 * _by_type(lost, table)[kind].value
+    apart = _by_type(table["omega_disr"] / table[MARK], table)
     values |= {f"{letter}.disr over quarter {kind}": value for kind, value in apart.items()}
     for name, kinds in (("BA", ("BA",)), ("BAM", BAM)):
         values[f"{letter}.holds quarter {name}"] = all_of(is_within(apart[kind], 0.8, 1.25) for kind in kinds)
-    largest = fragments[fragments["half"]].groupby("grain")[["mass_fraction"]].max()
-    kinds = fragments.groupby("grain")["type"].first()[largest.index]
-    pieces = {kind: median(largest.loc[kinds == kind, "mass_fraction"]) for kind in TYPES}
+    half = fragments[fragments["half"]].groupby("grain")
+    pieces = _by_type(half["mass_fraction"].max(), half[["material", "type", "a_eff"]].first())
     for kind, piece in pieces.items():
         values[f"{letter}.largest piece {kind}"] = piece
     values[f"{letter}.holds continuous"] = all_of(is_below(piece, 0.1) for piece in pieces.values())
@@ -126,12 +136,18 @@ def _how(letter, table, fragments):
     found = [Measured(row["mass_share"], row["mass_share_error"]) for row in single.to_dict("records")]
     values[f"{letter}.holds single"] = all_of(is_above(share, 0.8) for share in found)
     gain = table["n_contacts_max"] / table["n_contacts"]
-    gains = {kind: median(gain[table["type"] == kind]) for kind in TYPES}
+    gains = _by_type(gain, table)
     for kind, value in gains.items():
         values[f"{letter}.contacts {kind}"] = value
     values[f"{letter}.contacts BAM2 grain"] = float((gain[table["type"] == "BAM2"] > 1.0).mean())
     values[f"{letter}.holds contacts"] = "yes" if gains["BAM2"].value > 1.0 else "no"
     return values
+
+
+def _by_type(values, table):
+    """Type -> median of its grains, all cells counting alike."""
+    cells = cell_of(table)
+    return {kind: median(values[own], cells[own]) for kind in TYPES for own in (table["type"] == kind,)}
 
 
 def _near(table):
@@ -155,7 +171,8 @@ def _shapes(letter, table):
         more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
         values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more
     stretch = (table["axis_b_disr"] / table["axis_a_disr"]).replace(np.inf, np.nan)
-    most = stretch[bam.index].max()
+    most = stretch[bam.index[_of_figure_6(bam)]].max()
+    values[f"{letter}.remnants"] = 100.0 * float((parts["BA"]["mass_fraction_disr"] < WHOLE).mean())
     flat = {}
     for kind in TYPES:
         part = of_class(table[table["type"] == kind], "large")
@@ -191,9 +208,10 @@ def grown_claims(grown):
             *(math.log(large["nm"].max() / large["nm"].min()) * each for each in slope)
         )
         values[f"g.holds porosity {kind} stays"] = is_below(rise, STAYS)
-    own_sizes = np.isclose(grown["nm"].to_numpy()[:, None], FIGURE_6).any(axis=1)
-    smallest = np.isclose(grown["nm"], FIGURE_6[0])
-    for name, part in (("", grown), (" smallest", grown[smallest]), (" larger", grown[own_sizes & ~smallest])):
+    shown, smallest = grown[_of_figure_6(grown)], grown[np.isclose(grown["nm"], FIGURE_6[0])]
+    is_small = np.isclose(shown["nm"], FIGURE_6[0])
+    parts = {"": grown, " smallest of all": smallest, " smallest": shown[is_small], " larger": shown[~is_small]}
+    for name, part in parts.items():
         share, error, *_ = oblate_share(part.rename(columns=_AS_START), "start")
         found = values[f"g.oblate{name}"] = Measured(100 * share, 100 * error)
         values[f"g.holds oblate{name}"] = is_within(found, 45.0, 55.0)
@@ -217,6 +235,11 @@ def grown_claims(grown):
     correlation = rank_correlation(grown["n_monomers"].to_numpy(), grown["a_eff"].to_numpy())
     values["g.monomers with size"] = correlation
     return values
+
+
+def _of_figure_6(table):
+    """Which grains are of those that Fig. 6 shows."""
+    return (table["material"] == SHOWN) & np.isclose(table["nm"].to_numpy()[:, None], FIGURE_6).any(axis=1)
 
 
 _AS_START = {f"axis_{axis}": f"axis_{axis}_start" for axis in "abc"}

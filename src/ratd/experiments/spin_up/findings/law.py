@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from ratd.base.materials import get_material
-from ratd.base.measured import Measured, median
+from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.units import NM
+from ratd.experiments.spin_up.cells import cell_of
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.findings.ensemble import MARK, MARKS
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.size_law import curved_law, curved_law_value, size_law, size_law_unit, unit_of
+from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, unit_of
 
 __all__ = ["of_curve", "of_law", "of_prediction"]
 
@@ -58,6 +59,8 @@ def of_curve(table, grown):
         values |= _farthest(table[table["type"] == kind], kind, row)
         left_out = table.loc[table["type"] == kind, MARK].isna().groupby(np.round(table["a_eff"] / NM)).mean()
         values[f"curve.{kind} left out"] = float(left_out.max())
+        middle = table[(table["type"] == kind) & np.isclose(table["a_eff"], SPLIT, atol=1e-12)].dropna(subset=MARK)
+        values[f"curve.{kind} at a_0"] = geometric_mean(middle[MARK] / size_law_unit(middle), cell_of(middle))
         for least in FROM:
             part = curved_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * least)], MARK).iloc[0]
             values[f"curve.{kind} q from {least / NM:.0f}"] = Measured(part["q"], part["q_error"])
@@ -70,7 +73,8 @@ def of_curve(table, grown):
     row, own = law.loc[kind], get_material(material)
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
     cell, measured = (_of_cell(each, *EXAMPLE) for each in (grown, table))
-    values["example.median 1e7"], values["example.n"] = median(measured[MARK] / 1e7), len(measured)
+    values["example.mean 1e7"], values["example.n"] = geometric_mean(measured[MARK].dropna() / 1e7), len(measured)
+    values["example.median 1e7"] = median(measured[MARK] / 1e7)
     values["example.scatter"] = math.exp(np.log(measured[MARK]).std())
     values["example.printed"] = eq33(
         size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
