@@ -241,10 +241,16 @@ def test_time_that_is_up_is_told(tmp_path):
         (["kernel", "--out", "OUT", "--lammps", "no-such-program"], "no program that can be run"),
     ],
 )
-def test_bad_input_ends_with_one_sentence(words, message, tmp_path):
-    done = command("--quick", *[str(tmp_path) if word == "OUT" else word for word in words])
-    assert done.returncode == 1
-    assert message in done.stderr and "Traceback" not in done.stderr
+def test_bad_input_ends_with_one_sentence(words, message, tmp_path, benchmarks, capsys):
+    from benchmarks.__main__ import main
+
+    assert main(["--quick", *[str(tmp_path) if word == "OUT" else word for word in words]]) == 1
+    assert message in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_the_command_ends_with_the_status_and_no_traceback():
+    done = command("--quick", "speed")
+    assert done.returncode == 1 and "part is 'speed'" in done.stderr and "Traceback" not in done.stderr
 
 
 def test_aggregate_of_a_file_is_that_in_the_file(benchmarks, tmp_path):

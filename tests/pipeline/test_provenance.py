@@ -1,5 +1,9 @@
 """Source hashes: what they follow, what they leave out."""
 
+import re
+import tokenize
+from io import StringIO
+
 import pytest
 
 from ratd.base.errors import InputError
@@ -111,6 +115,50 @@ def test_comments_docstrings_and_blank_lines_do_not_count():
         ' f.\n    """\n    # why\n    return x\n\n\nclass B:\n    """B."""\n\n    c = """text\n\nin lines"""\n'
     )
     assert essential_text(explained) == essential_text(plain)
+
+
+def tokenized(source):
+    """Source without comments and the lines that they leave blank, by Python's own tokens; docstrings stay."""
+    lines, left_out = source.splitlines(), set()
+    for token in tokenize.generate_tokens(StringIO(source).readline):
+        row, column = token.start[0] - 1, token.start[1]
+        if token.type == tokenize.COMMENT:
+            lines[row] = lines[row][:column].rstrip()
+        if token.type == tokenize.NL and not lines[row].strip():
+            left_out.add(row)
+    return "\n".join(line for row, line in enumerate(lines) if row not in left_out)
+
+
+NASTY = r"""
+A = 'it\'s # none'  # 'one
+B = r"\" # none"  # "two
+C = f"{A[0]} # none"  # three
+D = '#' '''  # none
+
+# none of \''' either '''  # four
+E = (
+    1,  # five
+
+    # six
+    2,
+)
+F = 1 + \
+    2  # seven
+"""
+
+
+@pytest.mark.parametrize("folder", ["src", "tests"])
+def test_comments_are_those_that_python_sees(folder):
+    for path in (ROOT / folder).rglob("*.py"):
+        source = path.read_text()
+        assert essential_text(source) == essential_text(tokenized(source)), path
+
+
+def test_comments_beside_every_kind_of_string_are_those_that_python_sees():
+    compile(NASTY, "nasty", "exec")
+    assert essential_text(NASTY) == tokenized(NASTY)
+    assert not re.search("one$|two|three|four|five|six|seven", essential_text(NASTY))
+    assert essential_text(NASTY).count("# none") == 5
 
 
 @pytest.mark.parametrize(

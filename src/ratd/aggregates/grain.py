@@ -4,8 +4,6 @@ import math
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order
 
 from ratd.base.checks import check_radii, far_apart, is_number, number_array
 from ratd.base.errors import InputError
@@ -294,6 +292,10 @@ def _seated_along_tree(grain):
     Every sphere moves, with all that follow it, along the line to the one before it. In an aggregate that is a tree all
     contacts are at rest then; others, which close a ring, are off by about as much as the first ones moved.
     """
+    # few aggregates need this, and scipy takes longer to load than all else that they need
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order
+
     i, j = grain.contacts.T
     n = len(grain.radius)
     joined = coo_array((np.ones(len(i)), (i, j)), shape=(n, n)).tocsr()

