@@ -167,7 +167,9 @@ def join_clusters(radius, surface_energy, reduced_modulus, copies, rng):
             still, still_radius = position[begin : begin + half], radius[begin : begin + half]
             moving, moving_radius = position[begin + half : begin + 2 * half], radius[begin + half : begin + 2 * half]
             if copies:
-                moving[:] = still
+                for k in range(half):
+                    for axis in range(3):
+                        moving[k, axis] = still[k, axis]
             _turn_at_random(moving, rng)
             out = _centre(still, still_radius) + _centre(moving, moving_radius)
             _collide(moving, moving_radius, still, still_radius, out, surface_energy, reduced_modulus, rng)

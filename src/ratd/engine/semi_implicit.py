@@ -219,7 +219,7 @@ def _renewed(state, work):
                 work.landed,
             )  # fmt: skip
     fresh = _work(state)
-    fresh.landed[:] = work.landed
+    fresh.landed[0] = work.landed[0]
     return fresh
 
 

@@ -203,5 +203,8 @@ def pairs_within(position, radius, reach, edges):
         return close_images(position, radius, reach, edges)
     found = close_pairs(position, radius, reach)
     pairs = np.zeros((found.shape[0], 5), dtype=np.int64)
-    pairs[:, :2] = found
+    # not array to array, which alone takes seconds to compile
+    for p in range(found.shape[0]):
+        pairs[p, 0] = found[p, 0]
+        pairs[p, 1] = found[p, 1]
     return pairs
