@@ -68,6 +68,7 @@ def evolve(
     *,
     law: Any = None,
     box: Any = None,
+    drive: Any = None,
     duration: float,
     timestep: float | None = None,
     timestep_factor: float = 0.125,

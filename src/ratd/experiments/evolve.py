@@ -33,6 +33,9 @@ DEEPEST = 0.5
 FARTHEST = 0.1
 """Spheres whose contact is given may be apart by at most this part of the smaller radius: no contact reaches so far."""
 
+DRIVE_METHODS = ("turning", "follow", "leave", "sample", "load", "longest_step", "move")
+"""What a drive has to offer, see `ratd.drives`."""
+
 # name -> dimensions after `record`, units, meaning
 RECORDS = {
     "time": ((), "s", "time"),
@@ -62,6 +65,7 @@ def evolve(
     *,
     law=None,
     box=None,
+    drive=None,
     duration,
     timestep=None,
     timestep_factor=0.125,
@@ -91,6 +95,9 @@ def evolve(
         "jkr" or "dmt", `ratd.laws.jkr` (the default) or `ratd.laws.dmt` with their options, or a law of your own.
     box : part, optional
         `ratd.geometry.box.open_space` (the default) or `periodic`.
+    drive : part, optional
+        A drive of your own (`ratd.drives`), in open space. Its work is then the ``residual`` of the run, and `balance`
+        is not looked at.
     duration : float
         How long [s].
     timestep : float, optional
@@ -142,6 +149,9 @@ def evolve(
     in_box = has_images(box)
     if in_box and drag:
         raise InputError("drag is for open space; in a periodic box leave it out.")
+    if drive is not None:
+        _check_drive(drive, in_box, drag)
+        balance = None
     if not (is_number(duration) and duration > 0):
         raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
     if not (is_number(drag) and drag >= 0):
@@ -154,7 +164,8 @@ def evolve(
     if contacts is not None:
         contacts = _contacts(contacts, len(radius))
         _check_reach(contacts, position, radius, box)
-    drive = squeezing() if in_box else rest(drag)
+    if drive is None:
+        drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
     settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
@@ -197,6 +208,19 @@ def evolve(
                 progress(now / duration, pace.to_go(duration - now, now), rows[-1])
     _warn_of_passing(velocity, radius, state.scalar[DT])
     return _dataset(state, rows, pictures, law, box)
+
+
+def _check_drive(drive, in_box, drag):
+    """Refuse a drive of one's own that is none, or that is given with what is a drive itself."""
+    lacking = [name for name in DRIVE_METHODS if not hasattr(drive, name)]
+    if lacking or isinstance(drive, type):
+        raise InputError(
+            f"drive is {drive!r}, without {lacking[0]}(); it must have the methods of ratd.drives."
+            if lacking
+            else f"drive is the class {drive.__name__}; it must be one of its objects, {drive.__name__}(...)."
+        )
+    if in_box or drag:
+        raise InputError("drive is for open space without a drag; leave out the box and the drag.")
 
 
 def _warn_of_passing(velocity, radius, timestep):
