@@ -16,6 +16,7 @@ from ratd.base.errors import FileError, InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.figures.monomers import name_of
 from ratd.experiments.compression.figures.tension import read_pulls
+from ratd.experiments.compression.figures.spring_back import spring_back
 from ratd.experiments.compression.findings import findings
 from ratd.experiments.compression.plan import load
 from ratd.experiments.compression.tables import joined
@@ -151,6 +152,8 @@ def redraw(folder=".", into=None):
         figure = draw(name, plan, sets, entries, grains, folder / DATA)
         if figure is not None:
             save(figure, into / FIGURES / f"{name}.png")
+    if (springs := beside[-1]) is not None:
+        save(spring_back(springs), into / FIGURES / "spring_back.png")
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
     write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, *beside)))
 
