@@ -213,12 +213,10 @@ def evolve(
 def _check_drive(drive, in_box, drag):
     """Refuse a drive of one's own that is none, or that is given with what is a drive itself."""
     lacking = [name for name in DRIVE_METHODS if not hasattr(drive, name)]
-    if lacking or isinstance(drive, type):
-        raise InputError(
-            f"drive is {drive!r}, without {lacking[0]}(); it must have the methods of ratd.drives."
-            if lacking
-            else f"drive is the class {drive.__name__}; it must be one of its objects, {drive.__name__}(...)."
-        )
+    if lacking:
+        raise InputError(f"drive is {drive!r}, without {lacking[0]}(); it must have the methods of ratd.drives.")
+    if isinstance(drive, type):
+        raise InputError(f"drive is the class {drive.__name__}; it must be one of its objects, {drive.__name__}(...).")
     if in_box or drag:
         raise InputError("drive is for open space without a drag; leave out the box and the drag.")
 

@@ -32,12 +32,12 @@ FIGURE_6 = (200, 350, 500)
 SHOWN = "a-C"
 """Their material."""
 SURE = 2.0
-"""Standard errors of a difference from which on it is no chance."""
+"""Standard errors from which on a difference is no chance."""
 
 
 def is_above(found, limit):
     """Verdict: found > limit, a Measured and a number."""
-    return "open" if abs(found.value - limit) < 2.0 * found.error else "yes" if found.value > limit else "no"
+    return "open" if abs(found.value - limit) < SURE * found.error else "yes" if found.value > limit else "no"
 
 
 def is_below(found, limit):
