@@ -1,10 +1,13 @@
-"""Processes that need the same compiled code at the same time: one compiles it, the others load it."""
+"""Compiled code that several processes and checkouts need: one compiles it, the others load it."""
 
 import os
+import shutil
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
+import ratd
 from ratd.base import own_cache
 
 PROCESS = textwrap.dedent(
@@ -72,6 +75,33 @@ def test_other_signatures_are_compiled_side_by_side_and_none_is_lost(tmp_path):
     for name in ("first", "second"):
         (tmp_path / name).unlink()
     assert both(tmp_path, ("1.0", "1j")) == [(0, 1), (0, 1)]
+
+
+def misses_and_hits(checkout, cache):
+    """Run one compiled function of a copy of the package: (misses, hits)."""
+    program = "from ratd.base import fastmath as m; assert m.__file__.startswith(__import__('sys').argv[1]); "
+    program += "assert m.reciprocal(4.0) == 0.25; stats = m.reciprocal.stats; "
+    program += "print(sum(stats.cache_misses.values()), sum(stats.cache_hits.values()))"
+    environment = os.environ | {"RATD_CACHE": str(cache), "PYTHONPATH": str(checkout)}
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(checkout)], env=environment, capture_output=True, text=True, timeout=600
+    )
+    assert done.returncode == 0, done.stderr
+    return tuple(map(int, done.stdout.split()))
+
+
+def test_checkouts_with_the_same_source_share_the_code_and_others_do_not(tmp_path):
+    source = Path(ratd.__file__).parent
+    first, second = tmp_path / "first", tmp_path / "elsewhere" / "second"
+    for checkout in (first, second):
+        shutil.copytree(source, checkout / "ratd", ignore=shutil.ignore_patterns("__pycache__"))
+    assert misses_and_hits(first, tmp_path / "cache") == (1, 0)
+    assert misses_and_hits(second, tmp_path / "cache") == (0, 1)
+    # a file that the function does not stand in
+    with open(second / "ratd" / "engine" / "layout.py", "a") as file:
+        file.write("\nNEW = 1\n")
+    assert misses_and_hits(second, tmp_path / "cache") == (1, 0)
+    assert misses_and_hits(first, tmp_path / "cache") == (0, 1)
 
 
 def test_one_that_dies_while_it_compiles_keeps_nobody_waiting(tmp_path):

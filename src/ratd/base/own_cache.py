@@ -2,16 +2,18 @@
 
 numba's cache leaves two things to chance. Processes that start together, such as the jobs of a pipeline, compile the
 same function each for itself, which takes minutes in place of the seconds of loading it. And two of them that save
-other signatures of one function at the same moment may write the code of one under the name of the other.
+other signatures of one function at the same moment may write the code of one under the name of the other. A third
+thing costs time: it keeps the code of two checkouts apart, though their sources are the same.
 """
 
 import fcntl
 import hashlib
+import os
 import time
 from pathlib import Path
 
-from numba.core import types
-from numba.core.caching import FunctionCache
+from numba.core import config, types
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 
 __all__ = ["OwnCache"]
 
@@ -20,11 +22,30 @@ PATIENCE = 600.0
 LOOKS = 0.05
 """Seconds between two looks."""
 
+_PACKAGE = Path(__file__).parent.parent
 _held = {}  # path of a lock -> its open file
+
+
+class _InPackage(UserProvidedCacheLocator):
+    """A place by the path below the package, the same in every checkout; that of other files is left to numba."""
+
+    def __init__(self, function, file):
+        super().__init__(function, file)
+        self._cache_path = os.path.join(config.CACHE_DIR, Path(file).relative_to(_PACKAGE).with_suffix(""))
+
+    @classmethod
+    def from_function(cls, function, file):
+        return super().from_function(function, file) if Path(file).is_relative_to(_PACKAGE) else None
+
+
+class _Saved(CompileResultCacheImpl):
+    _locator_classes = [_InPackage, *CompileResultCacheImpl._locator_classes]
 
 
 class OwnCache(FunctionCache):
     """Compiled code on disk, but not that of parts from outside the package: it would not notice when they change."""
+
+    _impl_class = _Saved
 
     def load_overload(self, sig, target_context):
         if _foreign(sig):
