@@ -36,12 +36,12 @@ def config_files(arguments):
 
 def check(arguments):
     """End with one sentence where a config file is missing or no mapping in YAML."""
-    from ratd.base.errors import InputError
+    from ratd.base.errors import FileError, InputError
     from ratd.pipeline.config import load
 
     try:
         load(*config_files(arguments))
-    except InputError as error:
+    except (FileError, InputError) as error:
         sys.exit(str(error))
 
 

@@ -1,10 +1,11 @@
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from ratd.base.errors import InputError
-from ratd.base.materials import CO_S_FRACTIONS, MATERIALS, Material, element_ratios, get_material, mix
+from ratd.base.materials import CO_S_FRACTIONS, MATERIALS, Material, element_ratios, get_material, mix, sphere_mass
 from ratd.laws.contact_constants import (
     equilibrium_compression,
     equilibrium_contact_radius,
@@ -58,6 +59,12 @@ def test_element_ratios_of_one_mineral():
     assert ratios["Mg/O"] == 0.5
     assert ratios["Mg/Fe"] == math.inf
     assert element_ratios({"ferrosilite": 1.0})["Mg/Fe"] == 0.0
+
+
+def test_mass_of_a_sphere():
+    """That of water in a ball of 1 mm, and of two at once."""
+    assert sphere_mass(1e-3, 1000.0) == pytest.approx(4.18879e-6, rel=1e-5)
+    assert np.allclose(sphere_mass(np.array([1.0, 2.0]), 3.0 / (4.0 * np.pi)), [1.0, 8.0], rtol=1e-14)
 
 
 def test_moduli():

@@ -71,6 +71,8 @@ def test_a_material_of_ones_own_stands_in_a_file(chain, tmp_path):
     grow = "{{surface_energy_mJ_m2: {}, youngs_modulus_GPa: 54, poisson_number: 0.17, density_kg_m3: 2650}}"
     own.write_text(f"same: {grow.format(20)}\nfirm: {grow.format(40)}\n")
     assert ratd.read_materials(own)["firm"].surface_energy == pytest.approx(0.04)
+    with pytest.raises(ratd.FileError, match="none.yaml: cannot be read"):
+        ratd.read_materials("none.yaml")
     omega = {}
     for name in ("q-S", "same", "firm"):
         how = ("--material", name, "--epsilon", "1", "--starts", "1", "--out", tmp_path / name)

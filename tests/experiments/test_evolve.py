@@ -9,6 +9,7 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine import checkpoint as checkpoints
+from ratd.engine.layout import CONTACTS
 from ratd.experiments import evolve as module
 from ratd.experiments import intervals
 from ratd.experiments.evolve import RECORDS, evolve
@@ -56,6 +57,13 @@ NAN = np.array([[0.0, 0, 0], [np.nan, 0, 0]])
         ({"contacts": [0, 1]}, "contacts must be pairs"),
         ({"contacts": [[0.0, 1.0]]}, "contacts must be pairs"),
         ({"contacts": [[0, 1], [1, 0]]}, "contacts names the pair 0, 1 more than once"),
+        (
+            {"contacts": [[0, 0, 1, -1, 0], [0, 0, -1, 1, 0]], "box": periodic(1e-6)},
+            "contacts names the pair 0, 0 more than once",
+        ),
+        ({"balance": "x"}, "balance is 'x'; it must be a number above 0, or None"),
+        ({"balance": np.nan}, "balance is nan"),
+        ({"balance": True}, "balance is True"),
         (
             {"contacts": [[0, 1]], "position": PAIR * 1.2},
             "the pair 0, 1, but they are apart by 0.4 of the smaller radius; .* numbered from 0 in the order of pos",
@@ -186,6 +194,34 @@ def test_two_spheres_that_meet_keep_the_balance_with_the_default_step(speed, rec
     run = evolve(position, [2e-8, 2e-8], velocity, duration=1e-7 / speed, records=records)
     assert run["n_contacts"][-1] == 1
     assert abs(run["residual"][-1]) < 0.05 * run["kinetic_translation"][0]
+
+
+def test_a_balance_is_judged_by_a_whole_vibration_however_close_the_records():
+    """The pair is let go off its distance: in its first steps it has moved little of what it will."""
+    run = evolve([[0, 0, 0], [0, 0, 39.9e-9]], [2e-8, 2e-8], duration=1e-10, records=100)
+    moved = np.ptp(run["stored"].sum("storage"))
+    first = run.isel(record=run["time"].values < 16 * run.attrs["timestep"])
+    assert abs(first["residual"]).max() > 0.05 * np.ptp(first["stored"].sum("storage"))
+    assert abs(run["residual"]).max() < 0.05 * moved
+
+
+def test_a_record_that_no_step_parts_from_the_last_one_repeats_it():
+    box = periodic([79.8e-9, 1e-7, 1e-7])
+    run = evolve([[0, 0, 0], [39.9e-9, 0, 0]], [2e-8, 2e-8], box=box, duration=2e-11, records=100, balance=None)
+    same = np.diff(run["time"].values) == 0.0
+    assert same.any() and not same.all()
+    pressure = run["pressure_tensor"].values[:, 0]
+    assert (np.diff(pressure)[same] == 0.0).all() and (pressure[1:] != 0.0).all()
+
+
+def test_an_error_leaves_the_contacts_that_the_run_had_by_then():
+    """Spheres that come into contact need more room than they had at the start; then a step is far too long."""
+    grid = 39.9e-9 * np.stack(np.meshgrid(*[np.arange(8)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    with pytest.raises(RuntimeError, match="a velocity is no finite number") as caught:
+        evolve(grid, np.full(512, 2e-8), contacts=[], timestep=1e160, duration=1e161, records=1, balance=None)
+    state = caught.value.state
+    assert state.counter[CONTACTS] <= len(state.pair_i)
+    assert caught.value.run.sizes["monomer"] == 512
 
 
 @pytest.mark.parametrize("speed", [5.0, 20.0, 50.0])

@@ -1,13 +1,10 @@
 # Collisions: clusters built, brought to rest, shot at each other; tables and figures.
-from ratd.experiments.collision.plan import TITLES as COLLISION_TITLES
+from ratd.experiments.collision import plan as collision
 
 CELL = {
     name: COLLISIONS.pattern(name)
     for name in ("law", "cluster", "sample", "velocity", "impact")
 }
-BUILT = "<results>/collision/built/{material}/{cluster}.nc"
-RELAXED = "<results>/collision/relaxed/{law}/{cluster}.nc"
-COLLIDED = "<results>/collision/runs/{law}/{cluster}/sample_{sample}/{velocity}mps_b{impact}.nc"
 COLLISION_TABLES = {
     "collision_table": "Collisions",
     "collision_thresholds": "Collisions: fragmentation velocities",
@@ -18,7 +15,7 @@ COLLISION_TABLES = {
 
 rule build_clusters:
     output:
-        BUILT,
+        collision.BUILT,
     log:
         "<results>/logs/collision/built/{material}/{cluster}.log",
     benchmark:
@@ -39,11 +36,11 @@ rule build_clusters:
 
 rule relax_clusters:
     input:
-        lambda w: BUILT.format(
+        lambda w: collision.BUILT.format(
             material=COLLISIONS.material_of(w.law).name, cluster=w.cluster
         ),
     output:
-        RELAXED,
+        collision.RELAXED,
     log:
         "<results>/logs/collision/relaxed/{law}/{cluster}.log",
     benchmark:
@@ -64,9 +61,9 @@ rule relax_clusters:
 
 rule collide:
     input:
-        RELAXED,
+        collision.RELAXED,
     output:
-        COLLIDED,
+        collision.RUNS,
     log:
         "<results>/logs/collision/runs/{law}/{cluster}/sample_{sample}/{velocity}mps_b{impact}.log",
     benchmark:
@@ -90,8 +87,8 @@ rule collide:
 
 rule collision_tables:
     input:
-        runs=COLLISIONS.run_files(COLLIDED),
-        clusters=COLLISIONS.clusters_files(RELAXED),
+        runs=COLLISIONS.run_files(collision.RUNS),
+        clusters=COLLISIONS.clusters_files(collision.RELAXED),
     output:
         **{name: f"<results>/collision/tables/{name}.nc" for name in COLLISION_TABLES},
         **{
@@ -136,7 +133,7 @@ for name in COLLISIONS.figures:
                     f"<results>/collision/figures/{name}.{form}",
                     caption=f"../report/collision_{name}.rst",
                     category="Collision",
-                    labels=figure_labels(name, COLLISION_TITLES[name], form),
+                    labels=figure_labels(name, collision.TITLES[name], form),
                 )
                 for form in ("pdf", "png")
             },

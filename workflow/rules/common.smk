@@ -7,7 +7,7 @@ from pathlib import Path
 
 from snakemake.utils import min_version
 
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 from ratd.experiments.collision.plan import check as collision_plan
 from ratd.experiments.compression.plan import check as compression_plan
 from ratd.experiments.spin_up.plan import check as spin_up_plan
@@ -33,7 +33,7 @@ def checked(read, *arguments):
     """What a function gives, or the end of Snakemake with one sentence where it finds the config wrong."""
     try:
         return read(*arguments)
-    except InputError as error:
+    except (FileError, InputError) as error:
         sys.exit(str(error))
 
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from ratd.aggregates.cluster_growth import join_clusters
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.growth import check_seed, seed_sequence
-from ratd.base.checks import is_number
+from ratd.aggregates.growth import seed_sequence
+from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.base.units import NM

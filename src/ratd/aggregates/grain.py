@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ratd.base.checks import check_radii, far_apart, is_number, number_array
+from ratd.base.checks import check_radii, check_seed, far_apart, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
-from ratd.base.materials import get_material
+from ratd.base.materials import get_material, sphere_mass
 from ratd.base.words import plural
 from ratd.geometry.neighbours import close_pairs, connected_components
 from ratd.geometry.shape import Shape
@@ -109,9 +109,7 @@ class Grain:
         self.radius = number_array(radius, "radius")
         self.material = get_material(material)
         self.type = type
-        if seed is not None and not (is_number(seed) and seed == int(seed)):
-            raise InputError(f"seed is {seed!r}; it must be a whole number, or None.")
-        self.seed = seed
+        self.seed = None if seed is None else check_seed(seed)
         _check_arrays(self.position, self.radius)
         self.contacts, gap = _contacts(self.position, self.radius, self.material)
         _check_overlap(self.radius, self.material, self.contacts, gap)
@@ -133,7 +131,7 @@ class Grain:
     @cached_property
     def mass(self):
         """Masses of the monomers [kg], (n,): 4/3 pi rho a^3."""
-        return 4.0 / 3.0 * math.pi * self.material.density * self.radius**3
+        return sphere_mass(self.radius, self.material.density)
 
     @cached_property
     def effective_radius(self):

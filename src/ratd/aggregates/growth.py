@@ -8,7 +8,7 @@ import numpy as np
 from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.radii import RadiusDistribution, draw_radii
-from ratd.base.checks import GREATEST_SEED, is_number, is_whole, number_array
+from ratd.base.checks import check_seed, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import centre_of_mass
@@ -179,12 +179,6 @@ def _check_type(type):
     if not isinstance(type, str) or type not in TYPES:
         raise InputError(f"The type of aggregate is {type!r}; allowed are {', '.join(TYPES)}.")
     return type
-
-
-def check_seed(seed):
-    if not (is_whole(seed) and 0 <= seed <= GREATEST_SEED):
-        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0 and at most {GREATEST_SEED}.")
-    return int(seed)
 
 
 def _check_a_eff(a_eff, type, distribution):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.radii import mrn_moment, mrn_radii
-from ratd.base.checks import check_radii, is_number, is_whole
+from ratd.base.checks import check_radii, check_seed, is_number, is_whole
 from ratd.base.errors import InputError
 
 __all__ = [
@@ -61,8 +61,7 @@ def mrn(n, seed, *, smallest=SMALLEST, largest=LARGEST, mass_within=MASS_WITHIN,
     """
     if not is_whole(n) or n < 2:
         raise InputError(f"n is {n!r}; it must be a whole number of at least 2.")
-    if not is_whole(seed) or seed < 0:
-        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
+    check_seed(seed)
     if not (is_number(smallest) and is_number(largest) and 0.0 < smallest < largest):
         raise InputError(
             f"smallest and largest are {smallest!r} and {largest!r}; they must be numbers above 0, in m, in order."

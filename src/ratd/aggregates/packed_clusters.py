@@ -12,7 +12,7 @@ import numpy as np
 
 from ratd.aggregates.ballistic import _turn
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_number, is_whole
+from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.base.materials import get_material
@@ -106,8 +106,7 @@ def _checked(radii, radius, second_contact, seed):
         raise InputError(f"radius is {radius!r}; it must be a number above 0, in m.")
     if not (is_number(second_contact) and 0.0 <= second_contact <= 1.0):
         raise InputError(f"second_contact is {second_contact!r}; it must be a number from 0 to 1.")
-    if not is_whole(seed) or seed < 0:
-        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
+    check_seed(seed)
     largest, second = np.sort(radii)[::-1][:2]
     if largest + second > radius:
         raise InputError(

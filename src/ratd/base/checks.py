@@ -9,6 +9,7 @@ from ratd.base.errors import InputError
 __all__ = [
     "GREATEST_SEED",
     "check_radii",
+    "check_seed",
     "far_apart",
     "is_dust",
     "is_number",
@@ -37,6 +38,13 @@ def is_number(value):
 def is_whole(value):
     """Whether a value is a whole number, numpy's included; True and False are none."""
     return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def check_seed(seed):
+    """A seed as an int; an error for one that is none."""
+    if not (is_whole(seed) and 0 <= seed <= GREATEST_SEED):
+        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0 and at most {GREATEST_SEED}.")
+    return int(seed)
 
 
 def number_array(values, name, unit="m"):

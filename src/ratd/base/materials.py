@@ -15,6 +15,7 @@ __all__ = [
     "element_ratios",
     "get_material",
     "mix",
+    "sphere_mass",
 ]
 
 
@@ -25,6 +26,11 @@ PLAUSIBLE = {
     "viscous_time": (0.0, 1e-7, "s"),
 }
 """Between which values a constant of a solid lies, and its unit: what lies outside was given in another one."""
+
+
+def sphere_mass(radius, density):
+    """Mass 4/3 pi rho a^3 [kg] of solid spheres of the radius a [m] and the density rho [kg m-3], broadcast."""
+    return 4.0 / 3.0 * math.pi * density * radius**3
 
 
 @dataclass(frozen=True)

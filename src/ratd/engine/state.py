@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ratd.base.jit import jit
+from ratd.base.materials import sphere_mass
 from ratd.engine.contacts import append_contact, clear_contacts, update_contact_rates
 from ratd.engine.layout import (
     COUNTERS, CONTACTS, DRIVEN, DT_DRIFT, DRIVE_SCALARS, FORCE_ROW, INERTIA, INV_INERTIA, INV_MASS, MASS, MONOMERS,
@@ -107,7 +108,7 @@ def new_state(position, radius, materials, contacts, law, box, integrator, *, ve
         rows[:n, VX : VX + 3] = velocity[order]
     if spin is not None:
         rows[:n, WX : WX + 3] = spin[order]
-    rows[:n, MASS] = 4.0 / 3.0 * np.pi * density * radius[order] ** 3
+    rows[:n, MASS] = sphere_mass(radius[order], density)
     rows[:n, INERTIA] = 0.4 * rows[:n, MASS] * radius[order] ** 2
     rows[:n, INV_MASS] = 1.0 / rows[:n, MASS]
     rows[:n, INV_INERTIA] = 1.0 / rows[:n, INERTIA]

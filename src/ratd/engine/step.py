@@ -182,17 +182,20 @@ def run(state, law, drive, box, integrator, until):
     InputError
         If neither a contact nor an option says how long a step is.
     RuntimeError
-        If a velocity is no finite number.
+        If a velocity is no finite number; its attribute ``state`` holds the state at that step, whose contacts may have
+        more room than those of the state that was given.
     """
     if not state.scalar[DT] > 0.0:
         raise InputError("timestep is not given; a single sphere needs one, since it has no contact to take it from.")
     while True:
         code = advance(state, law, drive, box, integrator, until)
         if code == NOT_FINITE:
-            raise RuntimeError(
+            error = RuntimeError(
                 f"the integration failed at step {state.counter[STEPS]}, time {state.scalar[TIME]:.4g} s: a velocity "
                 "is no finite number; try a smaller time step"
             )
+            error.state = state
+            raise error
         if code != FULL:
             return state, code
         state = with_room(state, law, box, 2 * len(state.pair_i))

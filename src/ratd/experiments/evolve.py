@@ -28,6 +28,8 @@ __all__ = ["columns", "depth", "evolve", "touching_at_start"]
 
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
+VIBRATION = 16
+"""Steps after a record within which a vibration that had just begun moves all that it will: then its balance tells."""
 DEEPEST = 0.5
 """Two spheres may overlap at the start by at most this part of the smaller radius."""
 FARTHEST = 0.1
@@ -113,13 +115,14 @@ def evolve(
         not given: of a ``grain`` whose spheres only touch, give ``grain.contacts``. In a periodic box with their
         images, three integers n: X_i - X_j + n L is the difference.
     records : int
-        Number of records after the start, evenly spaced in time.
+        Number of records after the start, evenly spaced in time. One that no step parts from the last one repeats it.
     snapshot_every : int
         At every so many records, and at the last one, positions and pieces are kept; 0 for none.
     balance : float or None
         The run ends with an error when the balance of energy is off by more than this part of the greatest of the
         kinetic energy so far, what the contacts have let go or taken up, what was dissipated, and the work of the box,
-        and by more than 1e-4 of what the contacts store. None for no check. With a drag there is none.
+        and by more than 1e-4 of what the contacts store. A number above 0, or None for no check; with a drag there is
+        none.
     checkpoint : path-like, optional
         Where to keep what is needed to go on after a kill, with the same bits.
     progress : callable, optional
@@ -160,6 +163,8 @@ def evolve(
         raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
     if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
         raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
+    if not (balance is None or (is_number(balance) and balance > 0)):
+        raise InputError(f"balance is {balance!r}; it must be a number above 0, or None for no check.")
     touching = touching_at_start(position, radius, box)
     if contacts is not None:
         contacts = _contacts(contacts, len(radius))
@@ -184,20 +189,23 @@ def evolve(
         pictures = [_picture(state)] if snapshot_every else []
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
-    moved = _moved(rows, rows[0])
-    with attached("run", lambda error: _dataset(state, rows, pictures, law, box)):
+    moved, checked = _moved(rows, rows[0]), 1
+    with attached("run", lambda error: _dataset(getattr(error, "state", state), rows, pictures, law, box)):
         while len(rows) <= records:
             goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
             state, code = run(state, law, drive, box, integrator, goal)
             if code != STEPS_DONE:
-                rows.append(_row(state, law, box, rows[0]))
+                no_step = state.scalar[TIME] == rows[-1][0]
+                rows.append(rows[-1] if no_step else _row(state, law, box, rows[0]))
                 if snapshot_every and ((len(rows) - 1) % snapshot_every == 0 or len(rows) > records):
                     pictures.append(_picture(state))
                 moved = max(moved, _moved(rows[-1:], rows[0]))
                 # a vibration that has just begun has not moved all that it will: one record more tells
-                wait = 2 if len(rows) <= records else 1
-                if balance is not None and not drag and len(rows) > wait:
-                    _check_balance(rows[-wait], moved, balance)
+                told_until = np.inf if len(rows) > records else rows[-1][0] - VIBRATION * state.scalar[DT]
+                while checked < len(rows) and rows[checked][0] <= told_until:
+                    if balance is not None and not drag:
+                        _check_balance(rows[checked], moved, balance)
+                    checked += 1
             if checkpoint is not None and to_save.passed():
                 checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
             if foresee is not None and foresee.passed():
@@ -282,6 +290,10 @@ def _contacts(contacts, n):
     if not good:
         raise InputError(f"contacts must be pairs (k, 2) of different numbers of spheres from 0 to {n - 1}.")
     turned = pairs[:, 0] > pairs[:, 1]
+    if pairs.shape[1] == 5:
+        # a contact with the own image is also that with the image on the other side
+        x, y, z = pairs[:, 2:].T
+        turned |= (pairs[:, 0] == pairs[:, 1]) & ((x < 0) | ((x == 0) & ((y < 0) | ((y == 0) & (z < 0)))))
     ordered = np.where(turned[:, None], np.hstack([pairs[:, 1::-1], -pairs[:, 2:]]), pairs)
     pair, count = np.unique(ordered, axis=0, return_counts=True)
     if (count > 1).any():

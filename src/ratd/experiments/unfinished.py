@@ -14,7 +14,8 @@ def attached(name, make):
     name : str
         Of the attribute.
     make : callable
-        ``make(error)`` returns what it holds.
+        ``make(error)`` returns what it holds. An error of the engine has the last state as its attribute ``state``
+        (`ratd.engine.step.run`).
     """
     try:
         yield

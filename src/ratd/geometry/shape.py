@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ratd.base.jit import jit
+from ratd.base.materials import sphere_mass
 
 __all__ = [
     "INNER_PART",
@@ -470,7 +471,7 @@ class Shape:
         -------
         Shape
         """
-        mass = 4.0 / 3.0 * math.pi * density * radius**3
+        mass = sphere_mass(radius, density)
         moments, axes = principal_axes(position, mass, radius)
         a, b, c, p = shape_of(position, mass, radius, density)
         value, error = fractal_dimension(position, mass)

@@ -13,7 +13,7 @@ from scipy.constants import Boltzmann, electron_volt
 from scipy.optimize import brentq
 
 from ratd.base.errors import InputError
-from ratd.base.materials import get_material
+from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM
 from ratd.laws import contact_constants, derjaguin_muller_toporov
 from ratd.laws.johnson_kendall_roberts import S_END, compression_of, equilibrium_stiffness, normal_potential
@@ -217,7 +217,7 @@ def contact_barriers(material, radius, reach=REACH):
     """
     material = get_material(material)
     gamma, modulus = material.surface_energy, material.reduced_modulus
-    reduced_mass = 0.5 * material.density * 4.0 / 3.0 * math.pi * radius**3
+    reduced_mass = 0.5 * sphere_mass(radius, material.density)
     reduced = contact_constants.reduced_radius(radius, radius)
     force = contact_constants.pull_off_force(reduced, gamma)
     compression = contact_constants.equilibrium_compression(reduced, gamma, modulus)

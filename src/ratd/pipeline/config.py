@@ -9,7 +9,7 @@ from pathlib import Path
 import jsonschema
 import yaml
 
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 from ratd.base.materials import MATERIALS, Material, mix
 from ratd.base.units import GPA, MJ_PER_M2, NM, PS
 
@@ -68,13 +68,15 @@ def read_yaml(path):
 
     Raises
     ------
+    FileError
+        If it cannot be read.
     InputError
         One sentence with the file, and the line where it is not YAML, or where a key stands for the second time.
     """
     try:
         return yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+        raise FileError(f"{path}: cannot be read ({error.strerror})") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         place = getattr(error, "problem_mark", None)
         where = f"line {place.line + 1}: " if place else ""
@@ -186,6 +188,8 @@ def read_materials(path):
 
     Raises
     ------
+    FileError
+        If it cannot be read.
     InputError
         One sentence with the file, the material and the key.
     """
@@ -253,7 +257,7 @@ def together(*steps):
     for step in steps:
         try:
             results.append(step())
-        except InputError as error:
+        except (FileError, InputError) as error:
             sentences |= dict.fromkeys(str(error).splitlines())
     if sentences:
         raise InputError("\n".join(sentences))

@@ -9,7 +9,6 @@ another; in a periodic box that is a trap (`ratd.validation.lammps_box`).
 """
 
 import ctypes
-import math
 from contextlib import suppress
 from importlib import metadata
 from itertools import combinations_with_replacement
@@ -18,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ratd.base.errors import InputError
+from ratd.base.materials import sphere_mass
 from ratd.laws.contact_constants import equilibrium_contact_radius, pull_off_force, reduced_radius
 from ratd.laws.johnson_kendall_roberts import viscoelastic_damping
 from ratd.laws.tangential import (
@@ -130,7 +130,7 @@ def pair_coefficients(a_i, a_j, material):
     r = reduced_radius(a_i, a_j)
     r0 = equilibrium_contact_radius(r, gamma, e_star)
     at_rest = 2.0 * pull_off_force(r, gamma)
-    m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
+    m_i, m_j = (sphere_mass(a, material.density) for a in (a_i, a_j))
     damping = viscoelastic_damping(r0, e_star, material.viscous_time / nu**2) * (m_i + m_j) / (m_i * m_j * r0)
     slide = sliding_stiffness(r0, material.shear_modulus / (2.0 * (2.0 - nu)))
     roll = rolling_stiffness(pull_off_force(r, gamma), r) / r**2
@@ -164,7 +164,7 @@ def dmt_coefficients(a_i, a_j, material, damping_time):
     LAMMPS' viscoelastic damping is coefficient * m_red * a * d(delta)/dt with a^2 = delta R, here K A sqrt(delta)
     d(delta)/dt: the coefficient is (2/3) Y/(1 - nu^2) A/m_red. Its friction is Coulomb-like, so it is left out.
     """
-    m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
+    m_i, m_j = (sphere_mass(a, material.density) for a in (a_i, a_j))
     damping = 4.0 / 3.0 * material.reduced_modulus * damping_time * (m_i + m_j) / (m_i * m_j)
     constants = (material.youngs_modulus, damping, material.poisson_number, material.surface_energy)
     return {"dmt": constants, "tangential linear_nohistory": (0.0, 0.0)}
@@ -193,7 +193,7 @@ def stable_step(radius, material, contacts, most):
     r0 = equilibrium_contact_radius(reduced_radius(radius[i], radius[j]), gamma, e_star)
     c = viscoelastic_damping(r0, e_star, material.viscous_time / material.poisson_number**2)
     total = np.bincount(i, c, len(radius)) + np.bincount(j, c, len(radius))
-    rate = total / (4.0 / 3.0 * math.pi * material.density * radius**3)
+    rate = total / sphere_mass(radius, material.density)
     return min(most, DAMPING_STEP / (rate[i] + rate[j]).max())
 
 
@@ -270,7 +270,7 @@ class Spheres:
             number = np.arange(1, n + 1)
             self._lammps.create_atoms(n, number.tolist(), (of_sphere + 1).tolist(), np.ravel(position).tolist())
             self._atoms("radius")[:n] = radius
-            self._atoms("rmass")[:n] = 4.0 / 3.0 * np.pi * material.density * radius**3
+            self._atoms("rmass")[:n] = sphere_mass(radius, material.density)
         else:
             self._say(f"read_restart {saved}\ncomm_modify vel yes\natom_modify sort 0 0")
         self._say("pair_style granular")

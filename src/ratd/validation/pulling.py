@@ -61,7 +61,7 @@ ENDS = {
 """Pulls by the ends: part of the mass held at each, and the strain rate; the usual one along all three axes."""
 DENSEST = 0.62
 """Filling factor above which no grain is squeezed."""
-STEPS = LongSteps(until_phi=1.0)
+STEPS = LongSteps(strain=6e-6, until_phi=1.0)
 """Steps in the box: the smallest monomers would make explicit ones far too short."""
 FIRST_STEPS = {"longest": 3.0, "displacement": 0.5, "calming": 0.1, "until_phi": 1.0}
 """The long steps that the first rows were made with, and that the tables are known by. Those of `STEPS` give

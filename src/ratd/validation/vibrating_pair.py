@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
+from ratd.base.materials import sphere_mass
 from ratd.drives.rotating import angular_velocity, rotating
 from ratd.experiments.spin_up.pairs import holding_omega
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force, reduced_radius
@@ -53,7 +54,7 @@ class Pair:
     @classmethod
     def of(cls, a_1, a_2, material):
         """Pair of radii [m] and a `ratd.Material`."""
-        m_1, m_2 = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_1, a_2))
+        m_1, m_2 = (sphere_mass(a, material.density) for a in (a_1, a_2))
         r = reduced_radius(a_1, a_2)
         return cls(
             a_1 + a_2,

@@ -100,6 +100,7 @@ def test_built_clusters_are_at_rest_and_others_come_to_rest():
         ({"law": 3}, "law is 3; allowed are"),
         ({"impact_parameter": 1.0}, "impact_parameter is 1.0"),
         ({"seed": -1}, "seed is -1"),
+        ({"relaxed": "no"}, "relaxed is 'no'; it must be True or False"),
         ({"gap": -1e-9}, "gap is -1e-09; .* may not overlap"),
         ({"timestep": 1e-9}, r"timestep is 1e-09 s; the smallest sphere, 3e-07 m, allows at most \d"),
         ({"b": "cluster"}, "b is of type str; it must be a ratd.Grain"),

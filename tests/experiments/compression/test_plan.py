@@ -31,9 +31,23 @@ def test_the_large_config_adds_to_the_default_one():
     assert large.results == default.results and set(default.sets) < set(large.sets)
     assert set(default.files(plans.RUN, "n_16384")) < set(large.files(plans.RUN, "n_16384"))
     assert set(default.tables) < set(large.tables)
-    assert document.CONFIGS[-2:] == ("config/compression_default.yaml", "config/compression_large.yaml")
     for name in set(large.sets) - set(default.sets):
         assert large.grow(name)["n"] >= 16384
+
+
+def test_the_config_of_steps_adds_other_steps_to_the_default_one():
+    default = plan_of("config/compression_default.yaml")
+    steps = plan_of("config/compression_default.yaml", "config/compression_steps.yaml")
+    assert steps.results == default.results and set(default.sets) < set(steps.sets)
+    assert set(default.tables) < set(steps.tables) and "fewer_steps" in steps.figures
+    for name in set(steps.sets) - set(default.sets):
+        assert steps.grow(name)["n"] == 1024
+
+
+def test_the_document_is_drawn_by_all_configs_that_its_tables_are_made_with():
+    names = [f"config/compression_{name}.yaml" for name in ("default", "steps", "large")]
+    assert document.CONFIGS[-3:] == tuple(names)
+    assert set(plan_of(*names).figures) == set(plans.FIGURES)
 
 
 def test_the_paper_is_as_printed():

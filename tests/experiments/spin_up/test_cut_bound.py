@@ -157,7 +157,7 @@ def test_an_axis_without_direction_is_refused(axis):
         cut_bound(small_grain("BA", 3, 1), axis=axis)
 
 
-@pytest.mark.parametrize("directions", [0, -3, 2.5])
+@pytest.mark.parametrize("directions", [0, -3, 2.5, True])
 def test_a_wrong_number_of_directions_is_refused(directions):
     with pytest.raises(InputError, match="directions"):
         cut_bound(small_grain("BA", 3, 1), directions=directions)

@@ -175,6 +175,7 @@ def test_the_tables_of_the_materials_show_used_and_printed():
 
 def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
     ways = pd.DataFrame({"way": ["driven"], "mark": ["first loss"], "ratio": [1.1], "a_eff": [1e-7], "type": ["BA"]})
+    ways = ways.assign(material="q-S", seed=0, n_monomers=15)
     medians = {"ratd": (0.9, 1.2, np.nan), "limits of LAMMPS": (1.0, 1.1, 0.86)}
     starts = [
         {"limits": law, "mark": "first loss", "median": median} for law, found in medians.items() for median in found
@@ -183,16 +184,19 @@ def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
     assert found["lammps.starts ratd first loss grains"] == 2 and found["lammps.starts ratd first loss near"] == 1
     assert found["lammps.starts limits of LAMMPS first loss near"] == 3
     assert found["lammps.default first loss range"] == "1.10 to 1.10"
+    assert found["lammps.below 100"] == 1
 
 
 def test_the_largest_grains_beside_lammps_are_told_one_by_one():
     rows = [("BA", 1e-7, 0.9), ("BA", 3e-7, 0.85), ("BAM1", 3e-7, 1.2), ("BAM2", 3e-7, np.nan)]
     default = pd.DataFrame(rows, columns=["type", "a_eff", "ratio"]).assign(way="default", mark="25 % of the mass")
+    default = default.assign(material="q-S", seed=0, n_monomers=[15, 99, 100, 300])
     starts = pd.DataFrame({"limits": ["ratd"], "mark": ["first loss"], "median": [1.0]})
     found = of_lammps(default.assign(way="driven"), default, starts)
     assert {name: found[name] for name in found if "largest " in name and "nm" not in name and "%" not in name} == {
         "lammps.largest BA": 0.85, "lammps.largest BAM1": 1.2
     }  # fmt: skip
+    assert found["lammps.below 100"] == 2
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import xarray as xr
 from ratd.aggregates.packed_clusters import filling_factor
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.mrn import sample_length
+from ratd.base.materials import sphere_mass
 from ratd.base.units import NM
 from ratd.experiments.collision.fragmentation import fragmentation
 from ratd.geometry.neighbours import close_pairs
@@ -264,7 +265,7 @@ def read_runs(path):
 def _values(run, found, several):
     """The numbers of a row that follow from its run."""
     radius = run["radius"].values
-    mass = 4.0 / 3.0 * np.pi * run.attrs["density"] * radius**3
+    mass = sphere_mass(radius, run.attrs["density"])
     owner = run["cluster"].values
     largest = [int(np.flatnonzero(owner == own)[np.argmax(radius[owner == own])]) for own in (0, 1)]
     label = run["piece"].values

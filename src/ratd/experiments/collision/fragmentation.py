@@ -6,6 +6,7 @@ import xarray as xr
 
 from ratd.base.checks import is_number, is_whole
 from ratd.base.errors import InputError
+from ratd.base.materials import sphere_mass
 
 __all__ = [
     "STICKING",
@@ -22,9 +23,6 @@ __all__ = [
 
 STICKING = 0.15
 """X above which two clusters are said to stick (Kalweit & Drikakis 2006; Umstaetter & Urbassek 2020, Sect. 3.1)."""
-
-_N_S = "mass outside of the two largest pieces over that of all"
-_X = "mass of the largest piece less that of the second over that of all"
 
 
 def fragmentation_number(largest, second, whole):
@@ -62,7 +60,7 @@ def fragmentation(run):
         raise InputError(
             f"run is {type(run).__name__} without radius, piece and cluster; it must be what ratd.collide returns."
         )
-    mass = 4.0 / 3.0 * np.pi * run.attrs["density"] * run["radius"].values ** 3
+    mass = sphere_mass(run["radius"].values, run.attrs["density"])
     label = run["piece"].values
     number = label.max() + 1
     masses = np.bincount(label, mass, number)

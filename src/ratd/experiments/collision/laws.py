@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ratd.base.materials import sphere_mass
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
 from ratd.geometry.box import open_space
@@ -43,7 +44,7 @@ def contacts_of(grain, law):
 def _times(radius, material, law):
     """Times [s] that limit the step: see `PARTS`; those that a law does not have are left out."""
     least, greatest = float(np.min(radius)), float(np.max(radius))
-    mass = 4.0 / 3.0 * np.pi * material.density * least**3
+    mass = sphere_mass(least, material.density)
     times = {"contact": np.inf}
     for other in (least, greatest):
         distance = touching_distance(least, other, material.surface_energy, material.reduced_modulus)

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_number, is_whole
+from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.laws import balance_of, contacts_of, longest_step, step_of
@@ -180,6 +180,8 @@ def collide(
             f"velocity is {velocity:g} m/s: in a timestep of {timestep:.3g} s the clusters come nearer by more than "
             f"{FARTHEST:.0%} of the smallest radius; take a timestep of at most {nearer / velocity:.2g} s."
         )
+    if not isinstance(relaxed, bool):
+        raise InputError(f"relaxed is {relaxed!r}; it must be True or False.")
     if not relaxed:
         a, b = (at_rest(a, law), at_rest(b, law)) if b is not a else (at_rest(a, law),) * 2
     position, velocities, meet = approach(a, b, velocity, impact_parameter, gap, seed)
@@ -239,8 +241,7 @@ def _check(a, b, velocity, impact_parameter, seed, gap):
         raise InputError(f"velocity is {velocity!r}; it must be a number above 0, in m/s.")
     if not is_number(impact_parameter) or not 0.0 <= impact_parameter < 1.0:
         raise InputError(f"impact_parameter is {impact_parameter!r}; it must be a number from 0 to below 1.")
-    if not is_whole(seed) or seed < 0:
-        raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0.")
+    check_seed(seed)
     if not is_number(gap) or not gap > 0.0:
         raise InputError(
             f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start."

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from ratd.base.materials import sphere_mass
 from ratd.laws.contact_constants import reduced_radius
 from ratd.laws.derjaguin_muller_toporov import (
     adhesion_force,
@@ -29,7 +30,7 @@ PERIODS = 20.0
 def _pair(a_i, a_j, material):
     """Reduced mass [kg], K [N m^-3/2] and adhesion [N] of two spheres of radii [m]."""
     r = reduced_radius(a_i, a_j)
-    m_i, m_j = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_i, a_j))
+    m_i, m_j = (sphere_mass(a, material.density) for a in (a_i, a_j))
     adhesion = adhesion_force(r, material.surface_energy)
     return m_i * m_j / (m_i + m_j), hertz_stiffness(r, material.reduced_modulus), adhesion
 

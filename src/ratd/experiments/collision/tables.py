@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from ratd.base.materials import sphere_mass
 from ratd.experiments.collision.files import SERIES
 from ratd.experiments.collision.fragmentation import agglomeration, fragmentation_number, fragmentation_velocity
 from ratd.experiments.collision.likeness import is_equal, likeness_table
@@ -233,7 +234,7 @@ def threshold_table(table, materials, samples=2000):
         row |= {"collisions": len(part), "sticking_velocity": np.nan, "energy_per_contact": np.nan}
         if equal:
             material = materials[one["law"]]
-            mass = 4.0 / 3.0 * np.pi * material.density * radius**3
+            mass = sphere_mass(radius, material.density)
             if one["damping_time"] > 0.0:
                 stick = sticking_velocity(radius, radius, material, one["damping_time"])
                 row["sticking_velocity"] = stick if np.isfinite(stick) else np.nan

@@ -37,6 +37,7 @@ CONFIGS = (
     "config/spin_up.yaml",
     "config/compression.yaml",
     "config/compression_default.yaml",
+    "config/compression_steps.yaml",
     "config/compression_large.yaml",
 )
 SPUN = Path("docs/reproduction/data/driven.csv")

@@ -50,6 +50,7 @@ from ratd.experiments.compression.strength import (
     several,
     slope_of_structure,
 )
+from ratd.experiments.compression.steps import STRAIN, longest_strain
 from ratd.experiments.compression.tables import nearest_phi
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
 from ratd.experiments.compression.verdicts import verdicts
@@ -63,6 +64,11 @@ AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0
 """Filling factors at which numbers are told."""
 HALF = 0.06
 """Filling factor that parts the range of the fit in two, equal in the logarithm."""
+STEPS_BESIDE = {
+    "explicit": ("steps_0.1", "steps_1", "steps_3", "steps_10", "steps_30"),
+    "explicit_silicate": ("silicate", "short_silicate"),
+}
+"""Sets of explicit steps, and the sets of the same clusters in other steps that stand beside them."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
 """Losses that are compared between long steps and explicit ones."""
 DAMPED = "dissipated_damping"
@@ -248,16 +254,15 @@ def of_monomers(equal, tables):
     return found
 
 
-def of_steps(tables):
-    """Long steps over explicit ones, of the same clusters: geometric mean of the pressure over the range of the fit,
+def of_steps(tables, explicit):
+    """Other steps over explicit ones, of the same clusters: geometric mean of the pressure over the range of the fit,
     work, contacts and losses up to `STEPS_END`, what is damped from the beginning of that range to there, and steps.
 
     Parameters
     ----------
     tables : dict of str to xarray.Dataset
-        ``explicit``, and others.
+    explicit : xarray.Dataset
     """
-    explicit = tables["explicit"]
     found = {}
     for name, table in tables.items():
         pair = of_same_clusters([table, explicit])
@@ -301,6 +306,8 @@ def of_closed_formulae():
     P_0 = rolling_pressure(silicate.surface_energy, silicate.critical_rolling_displacement, radius)
     rate = box_rate(3e-7, time_unit(silicate, radius))
     found["sound_from_silicate"] = slower_than_sound_from(rate, PAPER_N, radius, silicate.density, P_0)
+    # how far a long step pulls at a contact, over what it holds, goes with the inverse square of the strain allowed
+    found["silicate_stiffer"] = (STRAIN / longest_strain(silicate, radius)) ** 2
     for name in MONOMER_RADIUS:
         found |= {f"of_{name}.{key}": value for key, value in _constants(name).items()}
     return found | {"phi_bcca": filling_factor_bcca(PAPER_N)}
@@ -392,10 +399,9 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=Non
             values[f"{name}.led_by_{k}"] = led_by(sets[name], 0.01, k)
     unequal = {name: table for name, table in sets.items() if name in ("lognormal", "mrn")}
     values |= of_monomers(sets.get("equal", sets["base"]), unequal)
-    if "explicit" in sets:
-        values |= of_steps(
-            {name: table for name, table in sets.items() if name.startswith("steps_")} | {"explicit": sets["explicit"]}
-        )
+    for explicit, names in STEPS_BESIDE.items():
+        if explicit in sets:
+            values |= of_steps({name: sets[name] for name in names if name in sets}, sets[explicit])
     values |= of_sizes(sets)
     values |= of_rates(sets, values)
     if {SMALL, "xi_2", "xi_32"} <= set(sets):

@@ -36,7 +36,7 @@ SLOWEST = ("slow_16384", "loose_16384")
 """The slowest squeeze of loose clusters, and the next one."""
 SLOW_RATES = ("1e-7", "1e-6", "3e-6")
 """Rates of Fig. 5 beside the usual one that are slow enough, as the names of their sets have them."""
-BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit"}
+BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit", "explicit_k_n": "explicit"}
 """What a set is compared with, by the beginning of its name; all others with the base set."""
 DENSE = ("equal", "k_n_10", "k_n_0")
 """Sets of the clusters of `SMALL` up to high filling factors, at another rate or with another damping."""
@@ -49,10 +49,11 @@ def of_pairs(sets):
     found = {}
     for name, table in sets.items():
         other = beside(name)
-        if name == other or not name.startswith(("k_n", "xi", "rate")) or other not in sets:
+        if name == other or not name.startswith(("k_n", "xi", "rate", "explicit_k_n")) or other not in sets:
             continue
         ratio, steeper = several(compared(table, sets[other]))
         found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
+        found[f"{name}.less_steep"] = Measured(-steeper.value, steeper.error)
         found[f"{name}.over_all"] = quotient(*(several(fit_power_law(each))[2] for each in (table, sets[other])))
         if name.startswith("xi"):
             times = table["rolling_pressure"].values[0] / sets[other]["rolling_pressure"].values[0]

@@ -3,6 +3,7 @@
 import math
 
 from ratd.aggregates.strength import sound_speed_kataoka2013
+from ratd.base.materials import sphere_mass
 from ratd.laws.johnson_kendall_roberts import contact_time
 
 __all__ = [
@@ -34,7 +35,7 @@ def time_unit(material, monomer_radius):
     ----------
     Kataoka et al. (2013), A&A 554, A4, Eq. 2, with E* where they print E; see `contact_time`.
     """
-    mass = 4.0 / 3.0 * math.pi * material.density * monomer_radius**3
+    mass = sphere_mass(monomer_radius, material.density)
     return contact_time(0.5 * mass, 0.5 * monomer_radius, material.reduced_modulus, material.surface_energy)
 
 

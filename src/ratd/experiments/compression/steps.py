@@ -1,14 +1,21 @@
 """The steps of a compression: long ones while the aggregate is loose, explicit ones where monomers crowd."""
 
+import math
 from typing import NamedTuple
 
+from ratd.aggregates.clusters import MONOMER_RADIUS
 from ratd.base.checks import is_number
 from ratd.base.errors import InputError
+from ratd.base.materials import get_material
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
 from ratd.laws.contact_constants import equilibrium_compression
 
-__all__ = ["LongSteps", "integrators"]
+__all__ = ["STRAIN", "LongSteps", "integrators", "longest_strain"]
+
+STRAIN = 6e-6
+"""By which part an edge of the box may change in a step where the monomers are of ice and of 0.1 um: 10 t_0 at
+C_v = 3e-7. In longer steps the pressure of a loose cluster is too low (docs/compression.md, "Fewer steps")."""
 
 ROLLED = 2 / 3
 """Part of the critical rolling displacement by which a contact may roll in a long step at most, so that none rolls past
@@ -26,9 +33,9 @@ class LongSteps(NamedTuple):
 
     Attributes
     ----------
-    strain : float
-        By which part an edge of the box changes in the longest step: 6e-6 is 10 t_0 at C_v = 3e-7. In longer steps the
-        pressure of a loose cluster is too low (docs/compression.md). Steps of t_0 are allowed however fast the box is.
+    strain : float or None
+        By which part an edge of the box changes in the longest step; None for `longest_strain`. Steps of t_0 are
+        allowed however fast the box is.
     displacement : float
         How far a monomer may move in a step against one in contact, over the equilibrium compression delta_0 of two.
         Where the critical rolling displacement is small it allows less, see `ROLLED`.
@@ -42,11 +49,40 @@ class LongSteps(NamedTuple):
         matrix of a long step costs more than it saves.
     """
 
-    strain: float = 6e-6
+    strain: float | None = None
     displacement: float = 0.5
     calming: float = 0.1
     landing: float = 0.2
     until_phi: float = 0.2
+
+
+def longest_strain(material, radius):
+    """By which part an edge of the box may change in a long step, `STRAIN` for ice and less for stiffer monomers.
+
+    Parameters
+    ----------
+    material : Material
+    radius : float
+        r_0 [m].
+
+    Returns
+    -------
+    float
+        `STRAIN` times the root of delta_0/r_0 over that of ice of 0.1 um, and `STRAIN` at most: 1e-6 for silicate of
+        0.6 um.
+
+    Notes
+    -----
+    A body that turns by Omega dt in a step bears a tension of theta k (Omega dt)^2 d (docs/model/engine.md), with the
+    stiffness k of a contact and its length d = 2 r_0. Over the pull-off force, which is about k delta_0, this is
+    theta (Omega dt)^2 d/delta_0. What turns it is the box, so that Omega dt goes with the strain of a step.
+    """
+    ice, own = (
+        equilibrium_compression(0.5 * a, each.surface_energy, each.reduced_modulus) / a
+        for each, a in ((get_material("ice"), MONOMER_RADIUS["ice"]), (material, radius))
+    )
+    # six digits, so that the rounding of a radius does not show
+    return STRAIN * min(1.0, round(math.sqrt(own / ice), 6))
 
 
 def integrators(material, radius, time_unit, timestep_factor, long_steps, strain_rate):
@@ -83,11 +119,14 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
         raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
     for name in ("strain", "displacement", "landing", "until_phi"):
         value = getattr(long_steps, name)
+        if name == "strain" and value is None:
+            continue
         if not (is_number(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
     natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
     displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
     how = {"displacement": displacement, "travel": TRAVEL * radius, "calming": long_steps.calming}
-    longest = max(long_steps.strain / (2.0 * strain_rate), 1.0)
+    strain = longest_strain(material, radius) if long_steps.strain is None else long_steps.strain
+    longest = max(strain / (2.0 * strain_rate), 1.0)
     times = {"longest": longest, "calmed": CALMED * longest, "landing": long_steps.landing}
     return semi_implicit(**how, **{name: value * time_unit for name, value in times.items()}), explicit

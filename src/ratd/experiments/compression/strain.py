@@ -96,7 +96,8 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     -------
     state : State
     rows : (m, columns) float64 array
-        Records, see `COLUMNS`; the first is that of the start, without a pressure.
+        Records, see `COLUMNS`; the first is that of the start, without a pressure. One that no step parts from the last
+        one repeats it.
     kept : (s, n, 3) float64 array
         Positions at the snapshots [m], unwrapped, in the order of the input.
 
@@ -118,10 +119,10 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     pace = intervals.Pace(rows[-1][0])
 
-    def reached():
+    def reached(state):
         return state, np.array(rows), np.array(kept) if kept else np.zeros((0, state.counter[MONOMERS], 3))
 
-    with attached("reached", lambda error: reached()):
+    with attached("reached", lambda error: reached(getattr(error, "state", state))):
         for number in range(len(rows), len(marks) + 1):
             if stop is not None and stop(np.array(rows)):
                 break
@@ -134,7 +135,8 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
             if number == change:
                 state = hand_over(state, law, drive, box, integrator, explicit)
                 parts = parts._replace(integrator=explicit)
-            rows.append(_row(state, parts, rows))
+            no_step = state.scalar[TIME] == rows[-1][0]
+            rows.append(rows[-1].copy() if no_step else _row(state, parts, rows))
             if number in snapshots:
                 kept.append(positions(state))
             if check is not None:
@@ -146,7 +148,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
             if tell is not None and to_tell.passed():
                 now = rows[-1][0]
                 tell(as_dict(rows[-1]), pace.to_go(marks[-1] - now, now))
-    return reached()
+    return reached(state)
 
 
 def positions(state):

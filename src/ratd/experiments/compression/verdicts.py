@@ -23,6 +23,8 @@ def verdicts(values, sets):
     for name, phi in (("base", 0.1), (HIGH, 0.48)):
         if f"{name}.rolling_{phi:g}" in values:
             found[f"leader_{phi:g}"] = max(WAYS[:3], key=lambda way: values[f"{name}.{way}_{phi:g}"].value)
+    if "silicate.rolling_0.48" in values:
+        found["leader_silicate"] = max(WAYS[:3], key=lambda way: values[f"silicate.{way}_0.48"].value)
     for name in sets:
         other = beside(name)
         if name != other and {f"{name}.ratio", f"{other}.ratio"} <= set(values):

@@ -231,7 +231,7 @@ def findings(data, fits):
         values |= of_all_that_left(letter, data.runs[f"figure4/{drive}"])
     values |= of_law(data.driven) | ensemble.marks_compared(data.driven) | ensemble.table_3_by_mark(data.driven)
     values |= ensemble.what_contacts_hold(data.grown, data.firm, data.driven) | claims.grown_claims(data.grown)
-    values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs)
+    values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs) | beside.of_overlap()
     for material, table in data.others.items():
         values |= {f"{material} {name}": value for name, value in beside.of_ways(table).items()}
     values |= beside.of_formulae(data.tables["formulae"])

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ratd.base.checks import is_dust, is_number, is_whole, not_dust
+from ratd.base.checks import check_seed, is_dust, is_number, is_whole, not_dust
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
 from ratd.base.statistics import equal_weights, weighted_line
@@ -139,8 +139,7 @@ def fit_ensemble(
     """
     if not (is_whole(n_bootstrap) and n_bootstrap >= 1 and is_number(confidence) and 0 < confidence < 1):
         raise InputError("fit_ensemble: n_bootstrap must be 1 or more, a whole number, and confidence between 0 and 1")
-    if not (is_whole(seed) and seed >= 0):
-        raise InputError(f"fit_ensemble: seed is {seed!r}; it must be a whole number of at least 0")
+    check_seed(seed)
     readings = _readings(mean_monomer_radius)
     table, drive = _fitted_rows(table, readings, mark)
     kinds = sort_cells(table[["material", "type"]].drop_duplicates())

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from ratd.base.materials import Material
+from ratd.base.materials import Material, sphere_mass
 from ratd.drives.largest import OMEGA
 from ratd.drives.rotating import rotating
 from ratd.engine.leapfrog import leapfrog
@@ -45,7 +45,7 @@ def force_controlled_omega(a_1, a_2, material):
 
     m_red omega^2 (a_1 + a_2) = 3 pi gamma R (docs/model/drives.md); for equal monomers sqrt(3 pi gamma/(2 m)).
     """
-    m_1, m_2 = (4.0 / 3.0 * math.pi * material.density * a**3 for a in (a_1, a_2))
+    m_1, m_2 = (sphere_mass(a, material.density) for a in (a_1, a_2))
     force = pull_off_force(reduced_radius(a_1, a_2), material.surface_energy)
     return holding_omega(force, m_1 * m_2 / (m_1 + m_2), a_1 + a_2)
 

@@ -1,12 +1,10 @@
 """What is told beside the ensemble: other ways to compute, pairs, printed formulae, LAMMPS, heat, Tables 1 and 2."""
 
-import math
-
 import numpy as np
 import pandas as pd
 from scipy.constants import Julian_year
 
-from ratd.base.materials import get_material
+from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
@@ -20,12 +18,12 @@ from ratd.experiments.spin_up.printed import FIRST_LOSS, PAIR_ERROR, SPIN_UP, VI
 from ratd.experiments.spin_up.radiation import grain_temperature, infrared_of, spin_up_time
 from ratd.experiments.spin_up.solid import solid_omega
 from ratd.laws import thermal
-from ratd.laws.contact_constants import equilibrium_contact_radius
+from ratd.laws.contact_constants import equilibrium_compression, equilibrium_contact_radius
 from ratd.laws.johnson_kendall_roberts import dissipation_time
 from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
-    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_pairs",
+    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs",
     "of_printed_pace", "of_printed_pairs", "of_ways", "recomputed",
 ]  # fmt: skip
 
@@ -95,7 +93,7 @@ def of_printed_pairs(acceleration, factor):
     for name in MATERIALS:
         material = get_material(name)
         for radius in PAIR_RADII:
-            mass = 4.0 / 3.0 * math.pi * material.density * radius**3
+            mass = sphere_mass(radius, material.density)
             r0 = equilibrium_contact_radius(0.5 * radius, material.surface_energy, material.reduced_modulus)
             step = factor * dissipation_time(mass, 0.5 * radius, r0, material.surface_energy)
             threshold = force_controlled_omega(radius, radius, material)
@@ -235,7 +233,19 @@ def of_lammps(driven, default, starts):
             f"lammps.{way} {mark} largest": part["a_eff"].max() / NM,
         }
         values |= {f"lammps.{way} {mark} {kind}": median(own["ratio"]) for kind, own in part.groupby("type")}
-    return values
+    monomers = default.groupby(["material", "type", "a_eff", "seed"])["n_monomers"].first()
+    return values | {"lammps.below 100": int((monomers < 100).sum())}
+
+
+def of_overlap():
+    """By how much two equal monomers of the ensemble overlap at rest [nm], the least and the most."""
+    own = [get_material(name) for name in MATERIALS]
+    overlaps = [
+        equilibrium_compression(0.5 * radius, each.surface_energy, each.reduced_modulus) / NM
+        for each in own
+        for radius in PAIR_RADII
+    ]
+    return {"contact.least": min(overlaps), "contact.most": max(overlaps)}
 
 
 def of_heat(size, strength=100.0):

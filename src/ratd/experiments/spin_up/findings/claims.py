@@ -168,6 +168,8 @@ def _shapes(letter, table):
         end = Measured(share, error)
         values[f"{letter}.oblate {name} disr"] = Measured(100 * end.value, 100 * end.error)
         values[f"{letter}.oblate {name} change"] = Measured(100 * change.value, 100 * change.error)
+        whole = oblate_change(part[part["mass_fraction_disr"] >= WHOLE])
+        values[f"{letter}.oblate whole {name} change"] = Measured(*(100 * number for number in whole))
         more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
         values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more
     stretch = (table["axis_b_disr"] / table["axis_a_disr"]).replace(np.inf, np.nan)

@@ -67,7 +67,7 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         with " range" the text of both drags. With "over" for "ours" ours over the printed one. "radiation.most error"
         is the greatest relative error of ours for the material of `shown`. For `shown` also, without errors, with
         " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great; for its material, with a
-        name of `SURROUNDINGS`.
+        name of `SURROUNDINGS`, and as "radiation.most around ours" the greatest factor by which one of them moves it.
     """
     values = {}
     for behind, how in WAYS.items():
@@ -84,6 +84,15 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     values |= _sizes(own.assign(**{mark: DMT * own[mark]}), grown, [strength], " DMT", mark=mark, **plain)
     for name, around in SURROUNDINGS.items():
         values |= _sizes(own, grown, strengths, f" {name}", mark=mark, around=around, **plain)
+    for law in ("ours", "printed"):
+        every = [f"radiation.{material} {kind} {strength:g} {law}" for kind in TYPES]
+        moved = [
+            abs(math.log(values[f"{key} {name}"].value / values[key].value))
+            for key in every
+            for name in SURROUNDINGS
+            if NONE not in (values[key], values[f"{key} {name}"])
+        ]
+        values[f"radiation.most around {law}"] = math.exp(max(moved, default=math.nan))
     return values
 
 
