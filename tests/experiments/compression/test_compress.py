@@ -130,7 +130,7 @@ def test_long_steps_do_not_pull_at_a_loose_cluster():
     assert exact["n_contacts"].values[-1] == 127
     late = exact["phi_mean"].values > 0.015
     off = []
-    for strain in (ratd.LongSteps().strain, 6e-5):
+    for strain in (STRAIN, 6e-5):
         run = ratd.compress(loose, **how, long_steps=ratd.LongSteps(strain=strain))
         off.append(
             np.mean((run["pressure"] - exact["pressure"]).values[late]) / np.abs(exact["pressure"]).mean().item()
@@ -147,6 +147,10 @@ def test_long_steps_are_shorter_for_stiff_monomers_since_they_add_energy():
     soft = replace(MATERIALS["ice"], name="soft", youngs_modulus=1e8)
     assert longest_strain(soft, 1e-7) == STRAIN
     loose = ratd.grow_bcca(64, material="silicate", seed=1)
+    # squeezed fast they would be no longer than explicit ones
+    for steps, integrator in ((ratd.LongSteps(), "Leapfrog"), (ratd.LongSteps(strain=STRAIN), "SemiImplicit")):
+        run = ratd.compress(loose, 1e-5, 0.023, snapshots=(), long_steps=steps)
+        assert run.attrs["integrator"].startswith(integrator)
     how = {"strain_rate": 1e-6, "until_phi": 0.04, "snapshots": (), "balance": False}
     exact, own, of_ice = (
         ratd.compress(loose, **how, long_steps=steps)

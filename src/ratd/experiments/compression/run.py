@@ -204,7 +204,7 @@ def compress(
     marks = np.log(first / phi) / (3.0 * box.rate_x)
     reached = [value for value in snapshots if first <= value <= until_phi]
     wanted = sorted({int(np.searchsorted(phi, value * (1.0 - 1e-9))) + 1 for value in reached})
-    later = None if long_steps is None else (int(np.searchsorted(phi, long_steps.until_phi)) + 1, explicit)
+    later = None if first_integrator is explicit else (int(np.searchsorted(phi, long_steps.until_phi)) + 1, explicit)
     state, key = prepared(cluster, parts, (until_phi, tuple(wanted), later))
 
     def tell(row, seconds_to_go):

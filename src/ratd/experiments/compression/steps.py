@@ -22,6 +22,8 @@ ROLLED = 2 / 3
 its limit from rest."""
 CALMED = 0.3
 """Length of a step over the longest above which it calms less (`calmed` of `semi_implicit`)."""
+OF_TIME_UNIT = 0.708
+"""f of an explicit step of t_0, of equal monomers."""
 LARGEST_FACTOR = 0.5
 """Greatest f of the explicit step: with longer ones a crowded cluster gains energy until it bursts."""
 TRAVEL = 0.01
@@ -34,8 +36,9 @@ class LongSteps(NamedTuple):
     Attributes
     ----------
     strain : float or None
-        By which part an edge of the box changes in the longest step; None for `longest_strain`. Steps of t_0 are
-        allowed however fast the box is.
+        By which part an edge of the box changes in the longest step; None for `longest_strain`. Steps of t_0, shorter
+        in proportion where this is below `STRAIN`, are allowed however fast the box is; where long steps would be no
+        longer than explicit ones, the steps are explicit.
     displacement : float
         How far a monomer may move in a step against one in contact, over the equilibrium compression delta_0 of two.
         Where the critical rolling displacement is small it allows less, see `ROLLED`.
@@ -104,7 +107,7 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
     Returns
     -------
     first, explicit : parts
-        The one to begin with and the one to end with; the same where there are no long steps.
+        The one to begin with and the one to end with; the same object where there are no long steps.
 
     Raises
     ------
@@ -127,6 +130,8 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
     displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
     how = {"displacement": displacement, "travel": TRAVEL * radius, "calming": long_steps.calming}
     strain = longest_strain(material, radius) if long_steps.strain is None else long_steps.strain
-    longest = max(strain / (2.0 * strain_rate), 1.0)
+    longest = max(strain / (2.0 * strain_rate), min(1.0, strain / STRAIN))
+    if longest <= timestep_factor / OF_TIME_UNIT:
+        return explicit, explicit
     times = {"longest": longest, "calmed": CALMED * longest, "landing": long_steps.landing}
     return semi_implicit(**how, **{name: value * time_unit for name, value in times.items()}), explicit
