@@ -66,7 +66,7 @@ HALF = 0.06
 """Filling factor that parts the range of the fit in two, equal in the logarithm."""
 STEPS_BESIDE = {
     "explicit": ("steps_0.1", "steps_1", "steps_3", "steps_10", "steps_30"),
-    "explicit_silicate": ("silicate", "short_silicate"),
+    "explicit_silicate": ("silicate", "long_silicate"),
 }
 """Sets of explicit steps, and the sets of the same clusters in other steps that stand beside them."""
 STEPS_WAYS = ("dissipated_rolling", "dissipated_twisting", "dissipated_damping", "dissipated_made")
