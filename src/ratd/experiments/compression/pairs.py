@@ -53,7 +53,6 @@ def of_pairs(sets):
             continue
         ratio, steeper = several(compared(table, sets[other]))
         found |= {f"{name}.paired": ratio, f"{name}.paired_exponent": steeper}
-        found[f"{name}.less_steep"] = Measured(-steeper.value, steeper.error)
         found[f"{name}.over_all"] = quotient(*(several(fit_power_law(each))[2] for each in (table, sets[other])))
         if name.startswith("xi"):
             times = table["rolling_pressure"].values[0] / sets[other]["rolling_pressure"].values[0]

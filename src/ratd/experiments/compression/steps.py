@@ -80,12 +80,15 @@ def longest_strain(material, radius):
     stiffness k of a contact and its length d = 2 r_0. Over the pull-off force, which is about k delta_0, this is
     theta (Omega dt)^2 d/delta_0. What turns it is the box, so that Omega dt goes with the strain of a step.
     """
-    ice, own = (
-        equilibrium_compression(0.5 * a, each.surface_energy, each.reduced_modulus) / a
-        for each, a in ((get_material("ice"), MONOMER_RADIUS["ice"]), (material, radius))
-    )
+    r_ice = MONOMER_RADIUS["ice"]
+    ice, own = _natural(get_material("ice"), r_ice) / r_ice, _natural(material, radius) / radius
     # six digits, so that the rounding of a radius does not show
     return STRAIN * min(1.0, round(math.sqrt(own / ice), 6))
+
+
+def _natural(material, radius):
+    """Compression delta_0 [m] of two equal monomers at rest."""
+    return equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
 
 
 def integrators(material, radius, time_unit, timestep_factor, long_steps, strain_rate):
@@ -120,17 +123,17 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
         return explicit, explicit
     if not isinstance(long_steps, LongSteps):
         raise InputError(f"long_steps is {long_steps!r}; it must be a ratd.LongSteps, or None for explicit steps.")
+    if long_steps.strain is None:
+        long_steps = long_steps._replace(strain=longest_strain(material, radius))
     for name in ("strain", "displacement", "landing", "until_phi"):
         value = getattr(long_steps, name)
-        if name == "strain" and value is None:
-            continue
         if not (is_number(value) and value > 0.0):
             raise InputError(f"long_steps.{name} is {value!r}; it must be a number above 0.")
-    natural = equilibrium_compression(0.5 * radius, material.surface_energy, material.reduced_modulus)
-    displacement = min(long_steps.displacement * natural, ROLLED * material.critical_rolling_displacement)
+    displacement = min(
+        long_steps.displacement * _natural(material, radius), ROLLED * material.critical_rolling_displacement
+    )
     how = {"displacement": displacement, "travel": TRAVEL * radius, "calming": long_steps.calming}
-    strain = longest_strain(material, radius) if long_steps.strain is None else long_steps.strain
-    longest = max(strain / (2.0 * strain_rate), min(1.0, strain / STRAIN))
+    longest = max(long_steps.strain / (2.0 * strain_rate), min(1.0, long_steps.strain / STRAIN))
     if longest <= timestep_factor / OF_TIME_UNIT:
         return explicit, explicit
     times = {"longest": longest, "calmed": CALMED * longest, "landing": long_steps.landing}

@@ -32,6 +32,10 @@ def verdicts(values, sets):
     if "xi_p48_32" in values:
         alike = max(abs(values[f"xi_p48_{name}"].value - 1.0) for name in ("8", "32")) < 0.4
         found["high_density"] = "hardly depends" if alike else "depends"
+    if "explicit_k_n_0.paired" in values:
+        n, ratio, steeper = (values[f"explicit_k_n_0.{name}"] for name in ("n", "paired", "paired_exponent"))
+        found["undamped_pressure"] = "certain" if below(ratio, n) else "not certain"
+        found["undamped_exponent"] = "certain" if steeper.value + _sure(steeper, n) < 0.0 else "not certain"
     if "slow_16384.over_0.03" in values:
         n = values["slow_16384.n"]
         late = values["slow_16384.over_0.03"]
