@@ -24,6 +24,8 @@ class Goal(NamedTuple):
         Whether the limit is the greatest value that meets the goal, else the least.
     low, high : float, optional
         Where a projected value may lie; None for a measured one.
+    machine : str
+        That it was measured on.
     """
 
     what: str
@@ -33,6 +35,7 @@ class Goal(NamedTuple):
     greatest: bool
     low: float | None = None
     high: float | None = None
+    machine: str = ""
 
     def off(self, value):
         """By what factor a value misses the goal; 1 and less where it meets it."""
@@ -71,11 +74,18 @@ def goals(out):
     list of Goal
         What was not measured is left out.
     """
-    data, small, runs = frame(out, "kernel"), frame(out, "small"), frame(out, "cost_runs")
-    others, paper = frame(out, "combinations"), frame(out, "cost_paper")
-    growth, overhead = frame(out, "scaling"), frame(out, "pipeline")
     found = []
-    for (name, motion), case in [] if data is None else data.groupby(["aggregate", "motion"], sort=False):
+    for name, judge in _JUDGES.items():
+        data = frame(out, name)
+        if data is not None:
+            machine = data["machine"].iloc[0] if "machine" in data else ""
+            found += [goal._replace(machine=machine) for goal in judge(data)]
+    return found
+
+
+def _kernel(data):
+    found = []
+    for (name, motion), case in data.groupby(["aggregate", "motion"], sort=False):
         own = case.loc[case["code"] == "ratd", "ns_per_contact_step"].median()
         found.append(
             Goal(f"kernel, {name} {motion}", "ns per contact and step", own, MOST_NS.get(name, OF_FILES), True)
@@ -83,61 +93,78 @@ def goals(out):
         ratio = pair_ratios(case)
         if len(ratio):
             found.append(Goal(f"LAMMPS over ratd, {name} {motion}", "times", float(np.median(ratio)), 10.0, False))
-    found += [] if others is None else _by_number(others[others["code"] == "ratd"])
-    if small is not None:
-        slowest = small.groupby(["aggregate", "motion"])["us_per_step"].median().max()
-        found.append(Goal(f"a step of {small['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True))
-    if runs is not None:
-        largest = runs[runs["size_nm"] == runs["size_nm"].max()]
-        name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
-        found.append(Goal(name, "s", largest["growth_seconds"].max(), 0.5, True))
-    for row in [] if paper is None else paper.itertuples():
+    return found
+
+
+def _small(data):
+    slowest = data.groupby(["aggregate", "motion"])["us_per_step"].median().max()
+    return [Goal(f"a step of {data['monomers'].iloc[0]} monomers, slowest case", "us", slowest, 1.5, True)]
+
+
+def _growth(data):
+    largest = data[data["size_nm"] == data["size_nm"].max()]
+    name = f"growth of a grain of {largest['size_nm'].iloc[0]:g} nm, slowest"
+    return [Goal(name, "s", largest["growth_seconds"].max(), 0.5, True)]
+
+
+def _paper(data):
+    found = []
+    for row in data.itertuples():
         law = f"drive {row.drive}, {row.pace}, f = {row.timestep_factor:g}"
         found.append(
             Goal(f"{row.grains} grains, {law}", "core-hours", row.core_hours, 48.0, True, *projected_range(row))
         )
-    answers = frame(out, "answer")
-    if answers is not None:
-        # what was run is faster than the goal asks for, and its answer is off
-        epsilon = answers["epsilon"].min()
-        least = min(ratios(answers).values())
-        what = f"least type, projected from {least * SLOW / epsilon:.3g} times at epsilon = {epsilon:.2g} to {SLOW:g}"
-        found.append(Goal(f"LAMMPS over ratd, time to omega at 25 % mass loss, {what}", "times", least, 300.0, False))
-    squeezed = frame(out, "compression")
-    if squeezed is not None:
-        largest = squeezed[squeezed["monomers"] == squeezed["monomers"].max()].set_index("code")
-        own, other, long = (largest.loc[code] for code in ("ratd, explicit", "LAMMPS", "ratd, long steps"))
-        what = f"compression of {own['monomers']} monomers"
-        found += [
-            Goal(f"{what}, explicit", "ns per contact and step", own["ns_per_contact_step"], 20.0, True),
-            Goal(
-                f"{what}, LAMMPS over ratd, step by step", "times",
-                other["ns_per_contact_step"] / own["ns_per_contact_step"], 10.0, False,
-            ),
-            Goal(f"{what}, LAMMPS over ratd, with long steps", "times", other["hours"] / long["hours"], 100.0, False),
-            Goal(f"growth of a cluster of {own['monomers']}", "s", own["growth_seconds"], 2.0, True),
-        ]  # fmt: skip
-    shot = frame(out, "collision")
-    if shot is not None:
-        met = shot[(shot["code"] == "ratd") & (shot["friction"] == "velocity")].iloc[0]
-        what = f"collision of {met['spheres']:.0f} MRN spheres"
-        found.append(Goal(what, "ns per contact and step", met["ns_per_contact_step"], 25.0, True))
-        for row, most in zip(shot[shot["code"].isna()].itertuples(), (3.0, 120.0), strict=True):
-            found.append(Goal(row.what, "s", row.seconds, most, True))
-    if overhead is not None:
-        share = 1.0 - overhead["seconds_of_work"].sum() / overhead["seconds_of_pipeline"].sum()
-        largest = overhead["size_nm"].max()
-        found.append(Goal(f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True))
-    if growth is not None:
-        paper_sized = growth[growth["monomers"] <= 3000]
-        peak = paper_sized["peak_bytes"].max() / 1e6
-        found.append(Goal("memory of a job, up to 3000 monomers", "MB", peak, 400.0, True))
     return found
 
 
+def _answer(data):
+    # what was run is faster than the goal asks for, and its answer is off
+    epsilon = data["epsilon"].min()
+    least = min(ratios(data).values())
+    what = f"least type, projected from {least * SLOW / epsilon:.3g} times at epsilon = {epsilon:.2g} to {SLOW:g}"
+    return [Goal(f"LAMMPS over ratd, time to omega at 25 % mass loss, {what}", "times", least, 300.0, False)]
+
+
+def _compression(data):
+    largest = data[data["monomers"] == data["monomers"].max()].set_index("code")
+    own, other = largest.loc["ratd, explicit"], largest.loc["LAMMPS"]
+    what = f"compression of {own['monomers']} monomers"
+    ratio = other["ns_per_contact_step"] / own["ns_per_contact_step"]
+    found = [
+        Goal(f"{what}, explicit", "ns per contact and step", own["ns_per_contact_step"], 20.0, True),
+        Goal(f"{what}, LAMMPS over ratd, step by step", "times", ratio, 10.0, False),
+    ]
+    if "ratd, long steps" in largest.index:
+        hours = largest.loc["ratd, long steps", "hours"]
+        found.append(Goal(f"{what}, LAMMPS over ratd, with long steps", "times", other["hours"] / hours, 100.0, False))
+    found.append(Goal(f"growth of a cluster of {own['monomers']}", "s", own["growth_seconds"], 2.0, True))
+    return found
+
+
+def _collision(data):
+    codes = data[data["code"].notna()].set_index(["code", "friction"])
+    own = codes.loc[("ratd", "velocity")]
+    what = f"collision of {own['spheres']:.0f} MRN spheres"
+    found = [Goal(what, "ns per contact and step", own["ns_per_contact_step"], 25.0, True)]
+    for row, most in zip(data[data["code"].isna()].itertuples(), (3.0, 120.0), strict=True):
+        found.append(Goal(row.what, "s", row.seconds, most, True))
+    return found
+
+
+def _pipeline(data):
+    share = 1.0 - data["seconds_of_work"].sum() / data["seconds_of_pipeline"].sum()
+    largest = data["size_nm"].max()
+    return [Goal(f"pipeline, sizes up to {largest:g} nm: not work", "%", 100.0 * share, 10.0, True)]
+
+
+def _memory(data):
+    peak = data.loc[data["monomers"] <= 3000, "peak_bytes"].max() / 1e6
+    return [Goal("memory of a job, up to 3000 monomers", "MB", peak, 400.0, True)]
+
+
 def _by_number(data):
-    """Whether many monomers cost no more than fewer, for each type that was grown with two numbers, list of Goal."""
-    found = []
+    """Whether many monomers cost no more than fewer, for each type that was grown with two numbers."""
+    data, found = data[data["code"] == "ratd"], []
     kind = data["aggregate"].str.extract(r"^(\w+) of \d+$")[0]
     for name, case in data.groupby(kind, sort=False):
         cost = case.groupby("monomers")["ns_per_contact_step"].median()
@@ -145,3 +172,18 @@ def _by_number(data):
         what = f"{many} monomers over {few}, {name}"
         found.append(Goal(what, "times the time of a step and contact", cost[many] / cost[few], 1.0, True))
     return found
+
+
+_JUDGES = {
+    "kernel": _kernel,
+    "combinations": _by_number,
+    "small": _small,
+    "cost_runs": _growth,
+    "cost_paper": _paper,
+    "answer": _answer,
+    "compression": _compression,
+    "collision": _collision,
+    "pipeline": _pipeline,
+    "scaling": _memory,
+}
+"""Name of a table -> the goals that it is judged by, a list of Goal."""

@@ -78,21 +78,20 @@ def _spread(values, digits=1):
 
 
 def _goals(out):
-    rows = []
-    for goal in goals(out):
-        least = "at most" if goal.greatest else "at least"
-        rows.append([goal.what, f"{least} {goal.limit:g} {goal.unit}", goal.found, goal.verdict])
-    if not rows:
+    """Goals as a table with a column a machine: of the folder, and of those in it, which hold other machines."""
+    folders = [out, *sorted({path.parent for path in out.glob("*/*.csv")})]
+    found = [goal for folder in folders for goal in goals(folder)]
+    if not found:
         return ""
-    return table(["what", "goal", "found", ""], rows) + "\n" + "\n".join(_machines(out))
-
-
-def _machines(out):
-    """The machines that the goals were measured on, list of str."""
-    names = ("kernel", "cost_paper", "scaling", "pipeline")
-    tables_ = [data for data in (frame(out, name) for name in names) if data is not None and "machine" in data]
-    machines = dict.fromkeys(machine for data in tables_ for machine in data["machine"])
-    return [f"Measured on one core of: {machine}." for machine in machines]
+    machines = list(dict.fromkeys(goal.machine for goal in found))
+    rows = {}
+    for goal in found:
+        limit = f"{'at most' if goal.greatest else 'at least'} {goal.limit:g} {goal.unit}"
+        rows.setdefault((goal.what, limit), {})[goal.machine] = f"{goal.found}, {goal.verdict}"
+    letters = [chr(ord("A") + k) for k in range(len(machines))]
+    legend = [f"{letter}: one core of {machine}." for letter, machine in zip(letters, machines, strict=True)]
+    cells = [[*what, *(row.get(machine, "") for machine in machines)] for what, row in rows.items()]
+    return table(["what", "goal", *letters], cells) + "\n" + "\n".join(legend)
 
 
 def _goals_section(out):
