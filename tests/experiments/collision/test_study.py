@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from ratd.base.errors import InputError
@@ -13,6 +14,7 @@ from ratd.experiments.collision.figures.figure5 import figure5
 from ratd.experiments.collision.figures.figure6 import figure6
 from ratd.experiments.collision.figures.figure7 import figure7, groups_of
 from ratd.experiments.collision.figures.figure8 import figure8
+from ratd.experiments.collision.figures.look import colour_of_velocity, looks_of
 from ratd.experiments.collision.figures.masses import masses, rows_by_cluster
 from ratd.experiments.collision.figures.page import page
 from ratd.experiments.collision.figures.scaling import scaling
@@ -24,6 +26,7 @@ from ratd.experiments.collision.tables import (
     cluster_table,
     collision_table,
     materials_of_laws,
+    mean_energy,
     read_collisions,
     threshold_table,
 )
@@ -216,3 +219,24 @@ def test_table_1(done, tmp_path):
     assert found["law"] == "velocity" and found["n_monomers"] == cluster.n_monomers
     assert found["filling_factor"] == pytest.approx(cluster.n_monomers * 0.4**3 / 1.6**3)
     assert found["n_contacts"] * cluster.n_monomers == pytest.approx(cluster.n_contacts, abs=1)
+
+
+def test_velocities_look_alike_in_all_panels():
+    looks = looks_of([[10, 15, 20, 25, 30, 35, 40], [], [15, 25, 40, 40]])
+    # those of the panel that has the fewest, each with the colour that it has in any figure
+    assert list(looks) == [15, 25, 40] and looks[25]["color"] == colour_of_velocity(25)
+    assert len({look["color"] for look in looks.values()}) == len({look["ls"] for look in looks.values()}) == 3
+    assert len(looks_of([range(1, 40)])) == 5 and looks_of([[], []]) == {}
+
+
+def test_energies_are_averaged_over_samples():
+    def one(sample, energy):
+        zero = np.zeros(2)
+        table = pd.DataFrame({"time": [0.0, 1.0], "kinetic_translation": [4.0, energy], "kinetic_spin": zero})
+        return {"sample": sample, "impact_energy": 4.0}, table
+
+    time, energy, error = mean_energy([one(1, 1.0), one(1, 1.0), one(1, 1.0), one(2, 3.0)])
+    assert time.tolist() == [0.0, 1.0] and energy.tolist() == [1.0, 0.5]
+    # of two samples with 0.25 and 0.75
+    np.testing.assert_allclose(error, [0.0, 0.25])
+    assert np.isnan(mean_energy([one(1, 1.0)])[2]).all()

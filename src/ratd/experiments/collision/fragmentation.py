@@ -164,12 +164,28 @@ def mean_and_error(part, column):
     """
     values = part[column].to_numpy(dtype=float)
     there = np.isfinite(values)
-    single = values[there]
-    _, place, count = np.unique(_samples(part)[there], return_inverse=True, return_counts=True)
+    return mean_over_samples(values[there], _samples(part)[there]) if there.any() else (np.nan, np.nan)
+
+
+def mean_over_samples(values, samples):
+    """Mean over collisions and its standard error, see `mean_and_error`.
+
+    Parameters
+    ----------
+    values : (n, ...) array
+        Of each collision, at least one.
+    samples : (n,) array
+        Sample of the cluster of each.
+
+    Returns
+    -------
+    mean, error : (...) arrays
+    """
+    _, place, count = np.unique(samples, return_inverse=True, return_counts=True)
     if len(count) > 1:
-        single = np.bincount(place, single) / count
-    mean = single.mean() if len(single) else np.nan
-    return mean, single.std(ddof=1) / np.sqrt(len(single)) if len(single) > 1 else np.nan
+        values = np.array([values[place == k].mean(axis=0) for k in range(len(count))])
+    mean = values.mean(axis=0)
+    return mean, values.std(axis=0, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan * mean
 
 
 def means(table, column):

@@ -5,7 +5,12 @@ import pandas as pd
 
 from ratd.base.materials import sphere_mass
 from ratd.experiments.collision.files import SERIES
-from ratd.experiments.collision.fragmentation import agglomeration, fragmentation_number, fragmentation_velocity
+from ratd.experiments.collision.fragmentation import (
+    agglomeration,
+    fragmentation_number,
+    fragmentation_velocity,
+    mean_over_samples,
+)
 from ratd.experiments.collision.likeness import is_equal, likeness_table
 from ratd.experiments.collision.sticking import breaking_energy_of, sticking_velocity
 from ratd.pipeline import io
@@ -193,9 +198,10 @@ def series_of(paths, choose):
 
 
 def mean_energy(series):
-    """Time [s] and mean kinetic energy over E_0 of some collisions of the same records."""
+    """Time [s], mean kinetic energy over E_0 and its standard error of some collisions of the same records."""
     energies = [(s["kinetic_translation"] + s["kinetic_spin"]).to_numpy() / row["impact_energy"] for row, s in series]
-    return series[0][1]["time"].to_numpy(), np.mean(energies, axis=0)
+    samples = [row.get("sample", 0) for row, _ in series]
+    return series[0][1]["time"].to_numpy(), *mean_over_samples(np.array(energies), samples)
 
 
 def threshold_error(threshold):

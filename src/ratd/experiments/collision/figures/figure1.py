@@ -7,6 +7,8 @@ from ratd.experiments.collision.figures.look import radii_of, radius_label
 from ratd.pictures.style import ONE_COLUMN, new_figure, styled
 
 BINS = 18
+ASIDE = 1.04
+"""Samples are drawn aside of each other by this factor."""
 
 
 def density(radius, smallest=SMALLEST, largest=LARGEST):
@@ -17,7 +19,7 @@ def density(radius, smallest=SMALLEST, largest=LARGEST):
 
 @styled
 def figure1(samples, smallest=SMALLEST, largest=LARGEST):
-    """Density of the MRN law and of samples, in bins of equal width in the logarithm.
+    """Density of the MRN law and of samples, in bins of equal width in the logarithm; bars are counting errors.
 
     Parameters
     ----------
@@ -44,9 +46,11 @@ def figure1(samples, smallest=SMALLEST, largest=LARGEST):
         there = counts > 0
         colour = ("#D55E00", "#009E73", "#0072B2", "#CC79A7")[k % 4]
         label = f"sample {k + 1}, largest {radius_label(radii.max())}"
-        axes.plot(
-            middle[there] * 1e6, part[there], ls="none", marker="osv^"[k % 4], color=colour, mfc="none", label=label
-        )
+        place = middle[there] * 1e6 * ASIDE ** (k - 0.5 * (len(samples) - 1))
+        axes.errorbar(
+            place, part[there], part[there] / np.sqrt(counts[there]), ls="none", marker="osv^"[k % 4], color=colour,
+            mfc="white", elinewidth=0.6, label=label,
+        )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="radius $r$ [µm]", ylabel="density $f(r)$ [µm$^{-1}$]")
     axes.legend()
     return figure

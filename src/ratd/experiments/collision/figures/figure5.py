@@ -32,7 +32,7 @@ def figure5(table, law):
     Returns
     -------
     matplotlib.figure.Figure
-        Open triangles on the line X = 0.15: where the paper prints the fragmentation velocity.
+        Large open markers on the line X = 0.15: where the paper prints the fragmentation velocity of a radius.
     """
     shown = of_equal_spheres(table[(table["law"] == law) & (table["impact_parameter"] == 0)])
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"Clusters of equal spheres, {law_text(law)}")
@@ -48,10 +48,11 @@ def figure5(table, law):
             plot_means(axes, part, quantity, radius_label(radius), **look)
         for known, velocity in PRINTED_THRESHOLDS.items():
             if abs(known / radius - 1) < 1e-6:
-                left.plot(velocity, STICKING, marker="v", ms=7, mfc="none", color=look["color"], ls="none", zorder=4)
-    (mark,) = left.plot([], [], marker="v", ms=7, mfc="none", color="black", ls="none")
-    sticking_line(left, STICKING)
-    left.legend([mark], [r"$v_\mathrm{frag}$ printed"], loc="upper right")
+                printed = {"marker": look["marker"], "color": look["color"], "label": ""}
+                left.plot(velocity, STICKING, ms=8, mfc="none", mew=1.2, ls="none", zorder=4, **printed)
+    (mark,) = left.plot([], [], marker="o", ms=8, mfc="none", mew=1.2, color="black", ls="none")
+    line = sticking_line(left, STICKING)
+    left.legend([mark, line], [r"$v_\mathrm{frag}$ printed", line.get_label()], loc="upper right")
     for axes, name in ((left, "agglomeration $X$"), (right, "fragmentation $N_\\mathrm{s}$")):
         velocity_axis(axes, shown)
         axes.set(ylabel=name, ylim=(-0.03, 1.03))

@@ -1,8 +1,10 @@
 """Fig. 6: X and N_s of MRN clusters against the velocity, beside the equal spheres that the paper likens them to."""
 
 import numpy as np
+import pandas as pd
 
 from ratd.experiments.collision.figures.look import (
+    MARKERS,
     MRN_STYLE,
     SMALLER,
     cluster_text,
@@ -22,6 +24,10 @@ from ratd.pictures.style import HIGHLIGHT, TWO_COLUMNS, empty, new_figure, style
 
 CUT = MRN_STYLE | {"color": "#b3004b", "ls": "--", "mfc": "white"}
 """How the cluster without its smallest spheres looks."""
+SINGLE = {"ls": "none", "mec": "black", "mfc": "white", "mew": 0.5, "ms": 3, "zorder": 3}
+"""How a single collision looks, in the marker of its sample."""
+ASIDE = 0.35
+"""By so much [m/s] the samples are drawn aside of each other."""
 BESIDE = (*SMALLER, *(PRINTED_RADII[quantity][0] for quantity in ("energy_half", "N_s", "X")))
 """Radii [m] of the equal spheres: two smaller than those of the paper, and the three that it likens MRN to."""
 
@@ -42,7 +48,8 @@ def figure6(table, law, mrn, cut=None):
     Returns
     -------
     matplotlib.figure.Figure
-        The level lines, one a sample, are what N_s cannot exceed: one less the largest spheres' part of the mass.
+        The level lines, one a sample, are what N_s of the MRN cluster cannot exceed: one less the largest spheres'
+        part of the mass.
     """
     table = table[(table["law"] == law) & (table["impact_parameter"] == 0)]
     own, without, equal = table[table["cluster"] == mrn], table[table["cluster"] == cut], of_equal_spheres(table)
@@ -57,20 +64,23 @@ def figure6(table, law, mrn, cut=None):
             if len(part):
                 look = {"color": colour_of(radius), "marker": marker_of(radius), "lw": 0.9}
                 plot_means(axes, part, quantity, radius_label(radius), **look)
-        axes.plot(own["velocity"], own[quantity], ls="none", marker=".", color="black", ms=4, zorder=3)
+        for k, (sample, part) in enumerate(own.groupby("sample")):
+            place = part["velocity"] + ASIDE * (k - 1)
+            axes.plot(place, part[quantity], **SINGLE, marker=MARKERS[k], label=f"sample {sample:g}")
         plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=5)
         if len(without):
             plot_means(axes, without, quantity, cluster_text(cut), **CUT, zorder=4)
-        velocity_axis(axes, own)
+        velocity_axis(axes, pd.concat([own, without]))
         axes.set_ylim(-0.03, 1.03)
     sticking_line(left, STICKING)
     shares = own.groupby("sample")["largest_share"].first()
-    for share in shares:
+    for k, share in enumerate(shares):
         right.axhline(1 - share, color=HIGHLIGHT, lw=1.2, zorder=0)
-    right.text(0.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
+        right.plot(0.5, 1 - share, marker=MARKERS[k], **SINGLE)
+    right.text(1.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
     left.set_ylabel("agglomeration $X$")
     right.set_ylabel("fragmentation $N_\\mathrm{s}$")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=7)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 

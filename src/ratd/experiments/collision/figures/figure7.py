@@ -9,7 +9,7 @@ from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 
 @styled
 def figure7(groups, law):
-    """Mean kinetic energy over E_0 against time, a panel a cluster, a curve a velocity.
+    """Mean kinetic energy over E_0 with its standard error against time, a panel a cluster, a curve a velocity.
 
     Parameters
     ----------
@@ -27,15 +27,17 @@ def figure7(groups, law):
     looks = looks_of([[row["velocity"] for row, _ in series] for series in groups.values()])
     longest = max((s["time"].iloc[-1] for series in groups.values() for _, s in series), default=1e-6)
     for axes, (name, series) in zip(panels, groups.items(), strict=True):
-        axes.set_title(cluster_text(name), pad=2)
+        axes.set_title(cluster_text(name), pad=4)
         axes.set_xlabel("time $t$ [µs]")
         if not series:
             empty(axes, "no collisions")
         for velocity, look in looks.items():
             own = [one for one in series if one[0]["velocity"] == velocity]
             if own:
-                time, energy = mean_energy(own)
+                time, energy, error = mean_energy(own)
                 axes.plot(time * 1e6, energy, label=f"{velocity:g} m s$^{{-1}}$", **look)
+                low, high = energy - error, energy + error
+                axes.fill_between(time * 1e6, low, high, color=look["color"], alpha=0.2, lw=0)
         axes.set(xlim=(0, longest * 1e6), ylim=(0, 1.02))
     panels[0].set_ylabel("kinetic energy over $E_0$")
     shared_legend(figure, panels)

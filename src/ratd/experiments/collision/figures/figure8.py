@@ -1,20 +1,22 @@
 """Fig. 8: the kinetic energy left at 0.5 us against the radius of equal spheres, with MRN beside it."""
 
 import numpy as np
-from matplotlib import colormaps
 
-from ratd.experiments.collision.figures.look import MARKERS, cluster_text, collisions_of, law_text
+from ratd.experiments.collision.figures.look import (
+    MARKERS,
+    cluster_text,
+    collisions_of,
+    colour_of_velocity,
+    law_text,
+)
 from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.experiments.collision.likeness import of_equal_spheres
 from ratd.pictures.style import GREY, ONE_COLUMN, empty, new_figure, styled
 
-MOST = 6
-"""Velocities that are drawn at most."""
-
 
 @styled
 def figure8(table, law, mrn):
-    """E(0.5 us)/E_0 against radius, a curve a velocity; MRN as a level of the same colour.
+    """E(0.5 us)/E_0 against radius, a curve a velocity; MRN as a level with the same marker, open.
 
     Parameters
     ----------
@@ -34,12 +36,12 @@ def figure8(table, law, mrn):
     if not len(equal):
         empty(axes, "no collisions")
         return figure
-    # velocities that most radii have
-    often = equal.groupby("velocity")["largest_radius"].nunique().sort_index()
-    velocities = often[often > 0.5 * often.max()].index.to_numpy()
-    velocities = velocities[np.unique(np.linspace(0, len(velocities) - 1, MOST).round().astype(int))]
+    # velocities that most radii have, and the MRN cluster
+    often = equal.groupby("velocity")["largest_radius"].nunique()
+    velocities = often[often > 0.5 * often.max()].index
+    velocities = np.intersect1d(velocities, own["velocity"]) if len(own) else velocities.sort_values()
     for k, velocity in enumerate(velocities):
-        colour = colormaps["viridis"](0.9 * k / max(len(velocities) - 1, 1))
+        colour = colour_of_velocity(velocity)
         part = equal[equal["velocity"] == velocity].assign(velocity=lambda t: t["largest_radius"])
         radius, mean, error = means(part, "energy_half")
         axes.errorbar(
@@ -48,11 +50,13 @@ def figure8(table, law, mrn):
         same = own[own["velocity"] == velocity]
         if len(same):
             mean, error = mean_and_error(same, "energy_half")
-            axes.axhline(mean, color=colour, lw=0.8, ls=(0, (4, 2)))
+            axes.axhline(mean, color=colour, lw=0.8, ls=(0, (4, 2)), zorder=0)
             # the errors side by side, to the right of all radii
             at = equal["largest_radius"].max() * 1e6 * (1.05 + 0.018 * k)
-            axes.errorbar(at, mean, np.nan_to_num(error), color=colour, marker="D", ms=3, capsize=1.5, ls="none")
-    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), marker="D", ms=3, label=f"level: {cluster_text(mrn)}")
+            axes.errorbar(
+                at, mean, np.nan_to_num(error), color=colour, marker=MARKERS[k], mfc="white", capsize=1.5, ls="none"
+            )
+    axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=f"{cluster_text(mrn)} (open marker)")
     axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))
     figure.legend(loc="outside lower center", ncols=3)
     return figure

@@ -18,6 +18,7 @@ __all__ = [
     "clusters_of",
     "collisions_of",
     "colour_of",
+    "colour_of_velocity",
     "label_of",
     "looks_of",
     "law_text",
@@ -44,17 +45,26 @@ LAWS = {"velocity": "friction by rate", "spring": "friction by springs", "dmt": 
 MRN_STYLE = {"color": "black", "marker": "D", "ls": "-", "lw": 1.4, "ms": 4.0}
 """How an MRN cluster looks."""
 MARKERS = "osv^P*X<>"
-STYLES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (1, 0.8)))
+STYLES = ("-", (0, (6, 1.5)), (0, (3, 1)), (0, (1, 0.8)), (0, (6, 1.5, 1, 1.5)))
 SMALLER = (0.22e-6, 0.26e-6)
 """Radii [m] of equal spheres that are smaller than those of the paper."""
 TRIED = (*SMALLER, *RADII)
 """Radii [m] of equal spheres from which colours and markers are taken."""
 _SCALE = colormaps["viridis"]
+_VELOCITIES = colormaps["plasma"]
+VELOCITIES = (10.0, 45.0)
+"""Velocities [m/s] at the ends of the scale of their colours."""
 
 
 def colour_of(radius):
     """Colour of a radius, by the place of the nearest of `TRIED`."""
     return _SCALE(0.9 * _place(radius) / (len(TRIED) - 1))
+
+
+def colour_of_velocity(velocity):
+    """Colour of a velocity [m/s], on another scale than that of radii."""
+    slow, fast = VELOCITIES
+    return _VELOCITIES(float(np.clip((velocity - slow) / (fast - slow), 0.0, 1.0)))
 
 
 def marker_of(radius):
@@ -117,11 +127,9 @@ def velocity_axis(axes, table):
     axes.set_xlim(0, 1.05 * table["velocity"].max())
 
 
-def sticking_line(axes, limit, said=True):
-    """The limit of X below which clusters are said to fragment, a level line."""
-    axes.axhline(limit, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
-    if said:
-        axes.text(0.3, limit + 0.01, "limit of sticking", color="#555555", va="bottom")
+def sticking_line(axes, limit):
+    """The limit of X below which clusters are said to fragment, a level line, which is returned for a legend."""
+    return axes.axhline(limit, color=GREY, lw=0.7, ls=(0, (4, 2)), zorder=0, label="limit of sticking")
 
 
 def shared_legend(figure, panels):
@@ -130,19 +138,18 @@ def shared_legend(figure, panels):
     figure.legend(handles.values(), handles, loc="outside lower center", ncols=len(handles) or 1)
 
 
-def looks_of(velocities, most=4):
+def looks_of(velocities):
     """Colours and line styles of some velocities, the same in all panels: float -> dict.
 
     Parameters
     ----------
     velocities : list of list of float
-        Of each panel. Those that all have are taken, else all that there are, at most so many.
-    most : int
+        Of each panel. The panel with the fewest says which, as many as there are line styles.
     """
-    own = [set(each) for each in velocities if len(each)]
-    every = sorted(set.intersection(*own) or set.union(*own)) if own else []
-    chosen = [every[k] for k in np.unique(np.linspace(0, len(every) - 1, most).round().astype(int))] if every else []
+    fewest = sorted(set(min((each for each in velocities if len(each)), key=lambda each: len(set(each)), default=[])))
+    ends = np.linspace(0, len(fewest) - 1, min(len(fewest), len(STYLES)))
+    chosen = [fewest[k] for k in ends.round().astype(int)]
     return {
-        velocity: {"color": _SCALE(0.85 * k / max(len(chosen) - 1, 1)), "ls": STYLES[k % len(STYLES)]}
-        for k, velocity in enumerate(chosen)
+        velocity: {"color": colour_of_velocity(velocity), "ls": style}
+        for velocity, style in zip(chosen, STYLES, strict=False)
     }

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import cluster_text, clusters_of, law_text, looks_of, shared_legend
+from ratd.experiments.collision.fragmentation import mean_over_samples
 from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
 from ratd.pipeline import io
 from ratd.pipeline.blocks import rows
@@ -10,7 +11,7 @@ from ratd.pipeline.blocks import rows
 
 @styled
 def masses(groups, law):
-    """Part of the mass in pieces of at least some mass, means over the collisions, a panel a cluster.
+    """Part of the mass in pieces of at least some mass, means with standard errors, a panel a cluster.
 
     Parameters
     ----------
@@ -28,18 +29,19 @@ def masses(groups, law):
     edges = np.geomspace(1e-4, 1.0, 81)
     looks = looks_of([[row["velocity"].item() for row in own] for own in groups.values()])
     for axes, (name, own) in zip(panels, groups.items(), strict=True):
-        axes.set_title(cluster_text(name), pad=2)
+        axes.set_title(cluster_text(name), pad=4)
         axes.set(xscale="log", ylim=(0, 1.02))
         if not own:
             empty(axes, "no collisions")
         for velocity, look in looks.items():
-            curves = []
-            for row in own:
-                if row["velocity"].item() == velocity:
-                    part = row["piece_mass"].values / row["mass"].item()
-                    curves.append([part[part >= edge].sum() for edge in edges])
-            if curves:
-                axes.plot(edges, np.mean(curves, axis=0), label=f"{velocity:g} m s$^{{-1}}$", **look)
+            here = [row for row in own if row["velocity"].item() == velocity]
+            if here:
+                parts = [row["piece_mass"].values / row["mass"].item() for row in here]
+                curves = np.array([[part[part >= edge].sum() for edge in edges] for part in parts])
+                samples = [row["sample"].item() if "sample" in row else 0 for row in here]
+                mean, error = mean_over_samples(curves, samples)
+                axes.plot(edges, mean, drawstyle="steps-pre", label=f"{velocity:g} m s$^{{-1}}$", **look)
+                axes.fill_between(edges, mean - error, mean + error, step="pre", color=look["color"], alpha=0.2, lw=0)
     shared_legend(figure, panels)
     panels[0].set_ylabel("part of the mass")
     panels[len(panels) // 2].set_xlabel("mass of a piece over that of both clusters")

@@ -44,7 +44,8 @@ def question(table, velocities):
                     level = np.full(len(own), height)
                     axes.plot(own[quantity], level, ls="none", marker=marker, mfc="none", mec=colour, ms=3, mew=0.5)
                     _, mean, error = means(own, quantity)
-                    axes.errorbar(mean, height, xerr=error, color=colour, marker=marker, ms=4.5, capsize=1.5)
+                    if len(own) > 1:
+                        axes.errorbar(mean, height, xerr=error, color=colour, marker=marker, ms=4.5, capsize=1.5)
                     if quantity == "N_s" and k == 0:
                         for share in own["largest_share"].unique():
                             axes.plot([1 - share] * 2, [place - 0.35, place + 0.35], color=HIGHLIGHT, lw=1.4, zorder=0)

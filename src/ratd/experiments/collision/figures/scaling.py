@@ -40,9 +40,10 @@ def scaling(thresholds):
         return figure
     for _, row in own.iterrows():
         colour = colour_of(row["radius"])
-        face = FACES[row["friction"]] or colour
-        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"], atol=0.0)), "D")
         other = abs(row["surface_energy"] - 0.025) > 1e-6
+        # what lies below a large marker is seen through it
+        face = FACES[row["friction"]] or (*colour[:3], 0.3 if other else 1.0)
+        marker = next((mark for time, mark in MARKS.items() if np.isclose(time, row["damping_time"], atol=0.0)), "D")
         axes.errorbar(
             row["sticking_velocity"], row["velocity"], row["error"], marker=marker, color=colour, mfc=face, capsize=1.5,
             ms=LARGE if other else 4.0, zorder=2 if other else 3, ls="none",

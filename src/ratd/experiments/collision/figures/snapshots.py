@@ -15,7 +15,7 @@ from ratd.pipeline.blocks import rows
 
 CAMERA = view_axes((0, -1, 0), (0, 0, 1))
 """Seen from the side, the clusters coming from left and right."""
-PART_SHOWN = 0.995
+PART_SHOWN = 0.998
 """Part of the spheres that each picture shows at least."""
 PIXELS = 420
 SIZES = colormaps["viridis"]
