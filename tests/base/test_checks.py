@@ -5,7 +5,7 @@ import pytest
 
 import ratd
 from files import make_grain
-from ratd.base.checks import GREATEST_SEED, check_radii, is_number, is_whole, number_array
+from ratd.base.checks import GREATEST_SEED, check_radii, is_number, is_whole, number_array, whole_number
 from ratd.base.errors import InputError
 
 
@@ -17,6 +17,13 @@ def test_numbers_of_numpy_are_numbers(value):
 @pytest.mark.parametrize("value", [True, np.True_, "1", 1j, np.nan, np.inf, None, [1], np.ones(2)])
 def test_what_is_no_number(value):
     assert not is_number(value) and not is_whole(value)
+
+
+def test_whole_numbers_may_be_written_with_an_exponent():
+    assert whole_number(1e3, "records", 1) == 1000 and isinstance(whole_number(1e3, "records", 1), int)
+    for value in (0, 1.5, "3", True, np.nan, 10**400):
+        with pytest.raises(InputError, match="records is .*; it must be a whole number of at least 1"):
+            whole_number(value, "records", 1)
 
 
 @pytest.mark.parametrize("values", [["1", "2"], [1j, 2], np.array([1 + 0j]), [True, False], [[1], [1, 2]], [None], "1"])

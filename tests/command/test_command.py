@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -322,6 +323,19 @@ def test_runs_that_a_user_saved_are_shown(tmp_path):
         ratd.read_runs(tmp_path / "other.nc")
     done = run("show", tmp_path / "other.nc")
     assert done.exit_code == 1 and "other.nc: holds none of these; allowed: files of spinup" in done.stderr
+
+
+def test_what_is_averaged_differs_in_its_starts_alone(tmp_path):
+    """Files of the documents, which hold several velocities and samples, and grains that differ."""
+    data = Path(__file__).parents[2] / "docs"
+    told = run("show", data / "collision" / "data" / "velocity" / "314nm.nc", "--out", tmp_path / "a").stdout
+    found = ratd.read_runs(data / "collision" / "data" / "velocity" / "314nm.nc")
+    for velocity, sample in {(row["velocity"].item(), row["sample"].item()) for row in found}:
+        own = [row["X"].item() for row in found if (row["velocity"], row["sample"]) == (velocity, sample)]
+        heading = f"{len(own)} rotations of 1226 spheres at {velocity:g} m/s, sample {sample:g}, mean"
+        assert told.count(heading) == 1 and answer("X", own, "").rstrip() in told
+    told = run("show", data / "reproduction" / "data" / "figure4" / "literal.nc", "--out", tmp_path / "b").stdout
+    assert "5 grains of 613 to 782 monomers, mean" in told
 
 
 @pytest.mark.parametrize(

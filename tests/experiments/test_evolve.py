@@ -353,3 +353,10 @@ def test_spheres_that_may_pass_through_each_other_are_warned_of():
     fast = {"position": [[0, 0, 0], [42e-9, 0, 0]], "radius": [20e-9] * 2, "velocity": [[5.0, 0, 0], [-5.0, 0, 0]]}
     with pytest.warns(UserWarning, match="meet at 10 m/s come nearer by 1e-07 m in a step of 1e-08 s"):
         evolve(**fast, duration=2e-8, timestep=1e-8)
+
+
+def test_pieces_are_numbered_by_their_mass():
+    """A sphere alone, given first, beside a pair."""
+    position = [[0, 0, 0], [1e-6, 0, 0], [1e-6 + 1.99e-8, 0, 0]]
+    run = evolve(position, np.full(3, 1e-8), duration=1e-11, records=2, snapshot_every=1)
+    assert run["piece"].values.tolist() == [1, 0, 0] and (run["snapshot_piece"] == run["piece"]).all()

@@ -362,6 +362,11 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
     Besides positions and radii the columns are: ``fragment``, the number of the fragment or piece, 0 being the largest;
     ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
     dropped are left out. The frames of a spin-up are those of the frame that turns with the grain.
+
+    Raises
+    ------
+    InputError
+        If the content, the unit or the suffix is not one of these, or the run has nothing to write.
     """
     path = _path(path)
     factor = _factor(unit)
@@ -373,7 +378,10 @@ def write_particles(content, path: str | Path, unit: str = "nm") -> None:
         )
     frames = list(_contents(content))
     if not frames:
-        raise InputError(f"{path}: the run has no snapshots to write; set snapshot_every")
+        raise InputError(
+            f"{path}: the run holds no snapshots to write and no last state; make it with snapshot_every above 0 (a "
+            "compression with snapshots, a list of filling factors)"
+        )
     if path.suffix in _TABLES:
         if len(frames) > 1:
             raise InputError(f"{path}: a {path.suffix} file holds one frame, but there are {len(frames)}; use .xyz")
@@ -406,7 +414,7 @@ def _contents(content):
     """Frames: a table of columns in SI units (forces in nN), edges of the box or None, and what is said of it."""
     if isinstance(content, Grain | Particles):
         yield _table(content.position, content.radius), getattr(content, "box", None), {}
-    elif "snapshot_x" in content:
+    elif "snapshot_omega" in content:
         for k in range(content.sizes["snapshot"]):
             snapshot = content.isel(snapshot=k)
             fragment = snapshot["snapshot_fragment"].values

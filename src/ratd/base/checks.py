@@ -1,5 +1,6 @@
 """What counts as a number, as an array of numbers, and as the size of a grain of dust."""
 
+import math
 from numbers import Integral, Real
 
 import numpy as np
@@ -17,6 +18,7 @@ __all__ = [
     "likely_unit",
     "not_dust",
     "number_array",
+    "whole_number",
 ]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-10, 1e-3
@@ -32,7 +34,12 @@ GREATEST_SEED = 2**53
 
 def is_number(value):
     """Whether a value is a finite real number, numpy's included; True and False are none."""
-    return isinstance(value, Real) and not isinstance(value, bool) and bool(np.isfinite(value))
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number that no float holds
+        return False
 
 
 def is_whole(value):
@@ -45,6 +52,13 @@ def check_seed(seed):
     if not (is_whole(seed) and 0 <= seed <= GREATEST_SEED):
         raise InputError(f"seed is {seed!r}; it must be a whole number of at least 0 and at most {GREATEST_SEED}.")
     return int(seed)
+
+
+def whole_number(value, name, least):
+    """A whole number of at least so many as an int, also one that is written as 1e3; an error for one that is none."""
+    if not (is_number(value) and value == int(value) and value >= least):
+        raise InputError(f"{name} is {value!r}; it must be a whole number of at least {least}.")
+    return int(value)
 
 
 def number_array(values, name, unit="m"):

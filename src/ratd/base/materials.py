@@ -1,6 +1,7 @@
 """Materials of the monomers: constants of the bulk and of its surface, and means of several materials."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from ratd.base.checks import is_number
@@ -247,6 +248,8 @@ def get_material(material, table=None):
     if isinstance(material, Material):
         return material
     table = MATERIALS if table is None else table
+    if not isinstance(table, Mapping):
+        raise InputError(f"table is of type {type(table).__name__}; it must be a dict, names and what they stand for.")
     if not isinstance(material, str) or material not in table:
         raise InputError(f"The material is {material!r}; allowed are {', '.join(table)}, or a ratd.Material.")
     return table[material]

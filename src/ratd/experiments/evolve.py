@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import xarray as xr
 
-from ratd.base.checks import check_radii, far_apart, is_number, number_array
+from ratd.base.checks import check_radii, far_apart, is_number, number_array, whole_number
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
 from ratd.drives.free import rest
@@ -21,7 +21,7 @@ from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws.chosen import law_of
 from ratd.laws.jkr_with_springs import jkr
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, momenta, stored
-from ratd.observables.pieces import heaviest_pieces, pieces
+from ratd.observables.pieces import heaviest_pieces, pieces, ranked_pieces
 from ratd.observables.pressure import COMPONENTS
 
 __all__ = ["columns", "depth", "evolve", "touching_at_start"]
@@ -159,10 +159,8 @@ def evolve(
         raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
     if not (is_number(drag) and drag >= 0):
         raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
-    if not (is_number(records) and records >= 1 and records == int(records)):
-        raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
-    if not (is_number(snapshot_every) and snapshot_every >= 0 and snapshot_every == int(snapshot_every)):
-        raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")
+    records = whole_number(records, "records", 1)
+    snapshot_every = whole_number(snapshot_every, "snapshot_every", 0)
     if not (balance is None or (is_number(balance) and balance > 0)):
         raise InputError(f"balance is {balance!r}; it must be a number above 0, or None for no check.")
     touching = touching_at_start(position, radius, box)
@@ -173,7 +171,7 @@ def evolve(
         drive = squeezing() if in_box else rest(drag)
     integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
 
-    settings = (materials, law, box, drive, integrator, float(duration), int(records), int(snapshot_every))
+    settings = (materials, law, box, drive, integrator, float(duration), records, snapshot_every)
     inputs = (position, radius, velocity, spin, kind, contacts)
     given = [array is not None for array in inputs]
     arrays = [array for array in inputs if array is not None]
@@ -383,7 +381,7 @@ def _picture(state):
     table = np.empty((len(back), 5))
     table[:, 0] = state.scalar[TIME]
     table[:, 1:4] = monomer_rows(state)[back, X : X + 3]
-    table[:, 4] = pieces(state)[2][back]
+    table[:, 4] = ranked_pieces(state)[back]
     return table
 
 
@@ -434,15 +432,19 @@ def _dataset(state, rows, pictures, law, box):
         about = {"units": units, "long_name": f"{name} at the end"}
         variables[name] = (("monomer", "axis"), rows[:, at : at + 3].copy(), about)
     variables["radius"] = ("monomer", rows[:, RADIUS].copy(), {"units": "m", "long_name": "radius"})
-    piece = pieces(state)[2][back]
-    variables["piece"] = ("monomer", piece, {"units": "1", "long_name": "number of the piece at the end"})
+    piece = ranked_pieces(state)[back]
+    variables["piece"] = (
+        "monomer",
+        piece,
+        {"units": "1", "long_name": "number of the piece at the end, 0 the heaviest"},
+    )
     if pictures:
         table = np.array(pictures)
         about = {"units": "s", "long_name": "time of the snapshot"}
         variables["snapshot_time"] = ("snapshot", table[:, 0, 0].copy(), about)
         about = {"units": "m", "long_name": "position at the snapshot"}
         variables["snapshot_position"] = (("snapshot", "monomer", "axis"), table[:, :, 1:4].copy(), about)
-        about = {"units": "1", "long_name": "number of the piece at the snapshot"}
+        about = {"units": "1", "long_name": "number of the piece at the snapshot, 0 the heaviest"}
         variables["snapshot_piece"] = (("snapshot", "monomer"), table[:, :, 4].astype("i8"), about)
     coordinates = {
         "storage": list(STORED),

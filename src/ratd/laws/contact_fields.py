@@ -30,8 +30,6 @@ RARE = 4
     A_I, A_J,  # radii [m]
     DAMPING_RATE,  # of the implicit damping [1/s], 0 where it is explicit
 ) = _offsets(0, COMMON)  # fmt: skip
-MODES = ("damping", "sliding", "rolling", "twisting")
-"""Ways in which a contact dissipates energy: E_DAMP, E_SLIDE, E_ROLL, E_TWIST."""
 
 
 def law_fields(count):

@@ -16,6 +16,14 @@ def heaviest_pieces(state, number=2):
     return np.concatenate([mass, np.zeros(number - len(mass))])
 
 
+def ranked_pieces(state):
+    """The piece of each monomer, (n,) int, 0 being the heaviest, as the monomers stand in the state."""
+    mass, _, label = pieces(state)
+    rank = np.empty(len(mass), dtype=np.int64)
+    rank[np.argsort(-mass, kind="stable")] = np.arange(len(mass))
+    return rank[label]
+
+
 @jit
 def largest_fragment(state):
     """Positions (m, 3) [m], masses (m,) [kg] and radii (m,) [m] of the largest fragment."""

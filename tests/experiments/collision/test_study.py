@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from ratd.aggregates.particles import read_particles, write_particles
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.collision import study
@@ -19,6 +20,8 @@ from ratd.experiments.collision.figures.masses import masses, rows_by_cluster
 from ratd.experiments.collision.figures.page import page
 from ratd.experiments.collision.figures.scaling import scaling
 from ratd.experiments.collision.figures.snapshots import colours_of, origin_of, picture, positions, row_of
+from ratd.experiments.collision.files import read_runs
+from ratd.experiments.collision.fragmentation import fragmentation
 from ratd.experiments.collision.plan import Plan
 from ratd.experiments.collision.tables import (
     COLUMNS,
@@ -171,13 +174,22 @@ def test_figures_draw(done, name):
     assert not any("no collisions" in text for text in words)
 
 
-def test_the_queue_keeps_snapshots_of_what_is_shown_alone(done):
+def test_the_queue_keeps_snapshots_of_what_is_shown_alone(done, tmp_path):
     assert all(row.sizes.get("snapshot", 0) == 0 for row in all_rows(done))
     with pytest.raises(InputError, match="no collision with snapshots has the rotation 0"):
         row_of(files(done), 0)
     shown = row_of([done / "data" / study.PICTURES[0]], 0)
     (same,) = [row for row in all_rows(done) if (row["cluster"], row["velocity"], row["seed"]) == ("unequal", 25.0, 0)]
     assert shown.sizes["snapshot"] == 3 and shown["X"].item() == same["X"].item()
+    # a file gives them as the run itself does, and they can be written for other programs
+    (again,) = read_runs(done / "data" / study.PICTURES[0])[:1]
+    assert again["snapshot_position"].shape == (3, shown.sizes["monomer"], 3)
+    assert (again["snapshot_piece"].values == positions(shown)[2]).all()
+    write_particles(again, tmp_path / "a.xyz")
+    frames = read_particles(tmp_path / "a.xyz", frame=2)
+    np.testing.assert_allclose(frames.position, positions(shown)[1][2], atol=1e-15)
+    with pytest.raises(InputError, match="without piece; .* read_runs gives of a file of ratd has its N_s"):
+        fragmentation(again)
     # each of the two came as one piece, the giant first of its own
     origin = origin_of(positions(shown)[2])
     assert origin.tolist() == [0] * (len(origin) // 2) + [1] * (len(origin) // 2)

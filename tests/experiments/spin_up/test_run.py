@@ -249,8 +249,18 @@ def test_integration_that_fails_says_so(grain, monkeypatch):
         return state
 
     monkeypatch.setattr(spinup, "relax", spoilt)
-    with pytest.raises(RuntimeError, match="no finite number"):
+    with pytest.raises(RuntimeError, match="no finite number") as failed:
         spin_up(grain, epsilon=0.3)
+    # what there is of the run is not lost
+    reached = failed.value.run
+    assert reached.attrs["end_reason"] == "failed" and reached.sizes["record"] >= 1
+
+
+def test_numbers_of_records_may_be_written_with_an_exponent(grain):
+    xr.testing.assert_identical(
+        spin_up(grain, epsilon=0.3, records=3e1, max_steps=1000),
+        spin_up(grain, epsilon=0.3, records=30, max_steps=1000),
+    )
 
 
 def test_progress_is_told(grain, monkeypatch):

@@ -24,6 +24,14 @@ from ratd.pipeline.provenance import provenance, source_hash
 
 __all__ = ["command", "show"]
 
+SET = ("velocity", "impact_parameter", "sample", "n_monomers")
+"""What rotations that are averaged have in common."""
+ANSWERS = {
+    "N_s": "fragmentation, 1 less the mass of the two largest pieces over that of all",
+    "X": "agglomeration: 1 where the largest piece has all the mass, 0 where the two largest are alike",
+    "n_pieces": "pieces, single spheres included",
+}
+"""Column -> what it is."""
 SNAPSHOTS = 5
 """Records from one snapshot of the first rotation to the next."""
 
@@ -107,17 +115,10 @@ def show(path, out):
         What to say.
     """
     found = [_as_row(run, path) for run in read_runs(path)]
-    n = found[0]["n_monomers"].item()
-    lines = [
-        f"{plural(len(found), 'rotation')} of {plural(n, 'sphere')} at {found[0]['velocity'].item():g} m/s, mean ± "
-        "standard deviation:"
-    ]
-    for name, text in (
-        ("N_s", "fragmentation, 1 less the mass of the two largest pieces over that of all"),
-        ("X", "agglomeration: 1 where the largest piece has all the mass, 0 where the two largest are alike"),
-        ("n_pieces", "pieces, single spheres included"),
-    ):
-        lines.append(f"{answer(name, [row[name].item() for row in found], '')}: {text}".replace(" :", ":"))
+    alike = {}
+    for row in found:
+        alike.setdefault(tuple(row[name].item() for name in SET), []).append(row)
+    lines = [line for key in sorted(alike) for line in _answers(dict(zip(SET, key, strict=True)), alike[key])]
     for row in found:
         if row.sizes.get("snapshot", 0):
             figure, page = Path(f"{out}.png"), Path(f"{out}.html")
@@ -127,6 +128,17 @@ def show(path, out):
             write_text(page, collision_page(times, place, row["radius"].values, piece, origin_of(piece), title))
             lines += [f"{figure} written", f"{page} written"]
             break
+    return lines
+
+
+def _answers(own, found):
+    """What is said of collisions that differ in their rotation alone; `own` has what they share."""
+    off = f", impact parameter {own['impact_parameter']:g}" if own["impact_parameter"] else ""
+    sample = f", sample {own['sample']:g}" if own["sample"] else ""
+    what = f"{plural(len(found), 'rotation')} of {plural(own['n_monomers'], 'sphere')} at {own['velocity']:g} m/s"
+    lines = [f"{what}{off}{sample}, mean ± standard deviation:"]
+    for name, text in ANSWERS.items():
+        lines.append(f"{answer(name, [row[name].item() for row in found], '')}: {text}".replace(" :", ":"))
     return lines
 
 

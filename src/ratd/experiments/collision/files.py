@@ -19,7 +19,7 @@ from ratd.pipeline.blocks import material_of
 from ratd.pipeline.blocks import rows as rows_of
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 
-__all__ = ["SERIES", "cluster_row", "clusters_of", "collision_row", "read_runs"]
+__all__ = ["SERIES", "cluster_row", "clusters_of", "collision_row", "read_runs", "with_snapshots"]
 
 _REFERENCES = "Umstaetter & Urbassek (2020), A&A 633, A24"
 
@@ -252,14 +252,38 @@ def collision_row(run, **names):
         places = np.rint(run["snapshot_position"].values / NM) * NM
         for k, axis in enumerate("xyz"):
             row[f"snapshot_{axis}"] = ("snapshot_monomer", places[:, :, k].ravel())
-        row["snapshot_piece"] = ("snapshot_monomer", _ranked(run).ravel())
+        row["snapshot_piece"] = ("snapshot_monomer", run["snapshot_piece"].values.ravel())
         row["radius"] = ("monomer", run["radius"].values)
     return row
 
 
 def read_runs(path):
-    """Collisions of a file, list of xarray.Dataset as `collision_row` makes them."""
-    return rows_of(io.read(path, "collisions"), "collisions")
+    """Collisions of a file, list of xarray.Dataset as `collision_row` makes them, see `with_snapshots`."""
+    return [with_snapshots(row) for row in rows_of(io.read(path, "collisions"), "collisions")]
+
+
+def with_snapshots(row):
+    """A row whose snapshots lie along ``snapshot`` and ``monomer``, as those of `ratd.collide`, in place of one length.
+
+    Parameters
+    ----------
+    row : xarray.Dataset
+        From `collision_row`, or with its snapshots as they shall be already.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    n = row.sizes.get("monomer", 0)
+    if "snapshot_position" in row or not n:
+        return row
+    places = np.stack([row[f"snapshot_{axis}"].values for axis in "xyz"], axis=1).reshape(-1, n, 3)
+    piece = row["snapshot_piece"]
+    about = {"units": "m", "long_name": "position at the snapshot, to a nanometre"}
+    row = row.drop_vars([*(f"snapshot_{axis}" for axis in "xyz"), "snapshot_piece"])
+    row["snapshot_position"] = (("snapshot", "monomer", "axis"), places, about)
+    row["snapshot_piece"] = (("snapshot", "monomer"), piece.values.reshape(-1, n), piece.attrs)
+    return row
 
 
 def _values(run, found, several):
@@ -296,16 +320,3 @@ def _values(run, found, several):
         "single_mass": float(found["piece_mass"].values[single].sum()),
         "balance": run.attrs["balance"],
     }
-
-
-def _ranked(run):
-    """Pieces of all snapshots, numbered by their mass, (snapshots, monomers) i4."""
-    mass = run["radius"].values ** 3
-    labels = run["snapshot_piece"].values
-    ranked = np.empty(labels.shape, "i4")
-    for k, label in enumerate(labels):
-        order = np.argsort(-np.bincount(label, mass), kind="stable")
-        rank = np.empty(len(order), "i4")
-        rank[order] = np.arange(len(order))
-        ranked[k] = rank[label]
-    return ranked

@@ -56,9 +56,12 @@ def fragmentation(run):
     InputError
         If it is no such run.
     """
-    if not isinstance(run, xr.Dataset) or not {"radius", "piece", "cluster"} <= set(run.variables):
+    names = run.variables if isinstance(run, xr.Dataset) else ()
+    lacks = [name for name in ("radius", "piece", "cluster") if name not in names]
+    if lacks:
+        already = "; what ratd.read_runs gives of a file of ratd has its N_s and X already" if "N_s" in names else ""
         raise InputError(
-            f"run is {type(run).__name__} without radius, piece and cluster; it must be what ratd.collide returns."
+            f"run is {type(run).__name__} without {', '.join(lacks)}; it must be what ratd.collide returns{already}."
         )
     mass = sphere_mass(run["radius"].values, run.attrs["density"])
     label = run["piece"].values

@@ -343,7 +343,7 @@ def _mach(name, strain_rate, phi, n=PAPER_N):
 def _near(table, phi):
     """Pressures of single clusters near a filling factor, (seeds,)."""
     k = _bin_at(table, phi)
-    return table["pressure"].values[:, k - 2 : k + 3].mean(axis=1)
+    return table["pressure"].values[:, max(k - 2, 0) : k + 3].mean(axis=1)
 
 
 def _again(table, other, phi):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_number, is_whole
+from ratd.base.checks import is_whole, whole_number
 from ratd.base.errors import InputError
 from ratd.drives.largest import OMEGA, TORQUE_WORK
 from ratd.drives.rotating import OMEGA_RAT
@@ -29,6 +29,7 @@ from ratd.experiments.spin_up.records import (
     snapshot,
     sum_of_energies,
 )
+from ratd.experiments.unfinished import attached
 from ratd.geometry.box import open_space
 from ratd.laws.chosen import check_stiffness, law_of
 from ratd.laws.jkr_with_springs import jkr
@@ -124,9 +125,10 @@ def spin_up(
     InputError
         If an argument is not usable.
     RuntimeError
-        If the integration fails, or leaves the balance of energy.
+        If the integration fails, or leaves the balance of energy; its attribute ``run`` holds the Dataset up to there.
     """
-    _check(grain, max_steps, records, snapshot_every)
+    _check(grain, max_steps)
+    records, snapshot_every = whole_number(records, "records", 1), whole_number(snapshot_every, "snapshot_every", 0)
     bound = cut_bound(grain)
     how = how_to_turn(
         grain.type, bound, drive=drive, stretch=stretch, pace=pace, unrest=unrest, drag=drag,
@@ -138,11 +140,12 @@ def spin_up(
         run.begin(relax(grain, law=run.law, timestep_factor=timestep_factor))
     watch = Watch(run, progress)
     to_save = intervals.Interval(intervals.CHECKPOINT)
-    while run.reason is None:
-        run.advance()
-        if run.reason is None and checkpoint is not None and to_save.passed():
-            run.save(checkpoint)
-        watch.look(run)
+    with attached("run", lambda error: run.dataset()):
+        while run.reason is None:
+            run.advance()
+            if run.reason is None and checkpoint is not None and to_save.passed():
+                run.save(checkpoint)
+            watch.look(run)
     return run.dataset()
 
 
@@ -309,7 +312,7 @@ class Run:
                 "steps": int(self.state.counter[STEPS]),
                 "timestep": first[-1],
                 "smaller_steps": self.smaller_steps,
-                "end_reason": self.reason,
+                "end_reason": self.reason or "failed",
                 "material": grain.material.name,
                 "type": grain.type or "",
                 "a_eff": grain.effective_radius,
@@ -322,12 +325,8 @@ class Run:
         return run
 
 
-def _check(grain, max_steps, records, snapshot_every):
+def _check(grain, max_steps):
     if not isinstance(grain, Grain):
         raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
     if max_steps is not None and not (is_whole(max_steps) and max_steps >= 1):
         raise InputError(f"max_steps is {max_steps!r}; it must be a whole number of at least 1, or None for no limit.")
-    if not (is_number(records) and records == int(records) and records >= 1):
-        raise InputError(f"records is {records!r}; it must be a whole number of at least 1.")
-    if not (is_number(snapshot_every) and snapshot_every == int(snapshot_every) and snapshot_every >= 0):
-        raise InputError(f"snapshot_every is {snapshot_every!r}; it must be a whole number of at least 0.")

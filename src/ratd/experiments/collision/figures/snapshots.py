@@ -7,6 +7,7 @@ from matplotlib.colors import LogNorm, to_rgb
 
 from ratd.base.errors import InputError
 from ratd.experiments.collision.figures.look import cluster_text, law_text
+from ratd.experiments.collision.files import with_snapshots
 from ratd.pictures.snapshots import LARGEST, OTHERS
 from ratd.pictures.spheres import render, scale_length, view_axes
 from ratd.pictures.style import TWO_COLUMNS, new_figure, styled
@@ -24,11 +25,10 @@ PANELS = 6
 
 def positions(row):
     """Times (k,) [s], positions (k, n, 3) [m] and pieces (k, n) of a row with snapshots."""
-    n = row.sizes.get("monomer", 0)
-    if not n:
-        raise InputError("figure: the collision has no snapshots; name it in snapshots.runs of the config")
-    places = np.stack([row[f"snapshot_{axis}"].values for axis in "xyz"], axis=1).reshape(-1, n, 3)
-    return row["snapshot_time"].values, places, row["snapshot_piece"].values.reshape(-1, n)
+    if not row.sizes.get("monomer", 0):
+        raise InputError("figure: the collision has no snapshots; name it in collision.snapshots.runs of the config")
+    row = with_snapshots(row)
+    return row["snapshot_time"].values, row["snapshot_position"].values, row["snapshot_piece"].values
 
 
 def origin_of(piece):
@@ -120,7 +120,9 @@ def row_of(paths, seed):
         for row in rows(io.read(path, "collisions"), "collisions"):
             if row["seed"].item() == seed and row.sizes.get("monomer", 0):
                 return row
-    raise InputError(f"figure: no collision with snapshots has the rotation {seed}; see snapshots.runs of the config")
+    raise InputError(
+        f"figure: no collision with snapshots has the rotation {seed}; see collision.snapshots.runs of the config"
+    )
 
 
 def draw(files, settings):
