@@ -105,6 +105,19 @@ def test_figure5_takes_the_nearest_snapshots_and_says_which():
     assert "moved since" in text and text.count("in one piece") == 3 and "67 % in one piece" in text
 
 
+def test_figure5_has_no_colours_where_displacements_begin():
+    run, mark = run_with_snapshots(), xr.Dataset({"omega_disr": 1.02e8})
+    first, second, _ = figure5(run, mark).axes[:3]
+    for axes, grey in ((first, True), (second, False)):
+        picture = axes.get_images()[0].get_array()
+        inside = picture[picture[..., 3] == 255][:, :3].astype(int)
+        assert (np.ptp(inside, axis=1) < 3).all() == grey
+        assert ("counted from here" in [text.get_text() for text in axes.texts]) == grey
+    # where the first picture is of a later snapshot it has them
+    later = figure5(run, xr.Dataset({"omega_disr": 6e8})).axes[0]
+    assert "counted from here" not in [text.get_text() for text in later.texts]
+
+
 def test_figure5_without_what_it_needs():
     with pytest.raises(InputError, match="no snapshots"):
         figure5(make_run(1e8), xr.Dataset({"omega_disr": 1e8}))

@@ -26,6 +26,14 @@ TWO_COLUMNS = 180 * MILLIMETRE
 # Of Okabe and Ito's palette, told apart with any colour vision.
 HIGHLIGHT = "#E69F00"
 GREY = "#8A8A8A"
+ENERGY_COLOURS = {
+    "rolling": "#0072B2",
+    "twisting": "#D55E00",
+    "sliding": "#009E73",
+    "damping": GREY,
+    "made": HIGHLIGHT,
+}
+"""Colour of each way in which energy is lost; "made" is what a new contact radiates as it forms."""
 
 RC = {
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same on every machine, see `own_fonts_first`

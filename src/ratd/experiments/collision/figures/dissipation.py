@@ -11,13 +11,13 @@ from ratd.experiments.collision.figures.look import (
 )
 from ratd.experiments.collision.fragmentation import means
 from ratd.experiments.collision.likeness import is_equal
-from ratd.pictures.style import TWO_COLUMNS, empty, new_figure, styled
+from ratd.pictures.style import ENERGY_COLOURS, TWO_COLUMNS, empty, new_figure, styled
 
 WAYS = {
-    "by_damping": ("normal damping", "#0072B2", "o"),
-    "by_sliding": ("sliding", "#D55E00", "s"),
-    "by_twisting": ("twisting", "#009E73", "^"),
-    "by_rolling": ("rolling", "#CC79A7", "v"),
+    "by_damping": ("normal damping", ENERGY_COLOURS["damping"], "o"),
+    "by_sliding": ("sliding", ENERGY_COLOURS["sliding"], "s"),
+    "by_twisting": ("twisting", ENERGY_COLOURS["twisting"], "^"),
+    "by_rolling": ("rolling", ENERGY_COLOURS["rolling"], "v"),
     "energy_end": ("still moving", "black", "D"),
 }
 """Column -> label, colour, marker."""

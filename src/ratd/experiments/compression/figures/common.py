@@ -13,18 +13,30 @@ from ratd.pipeline import io
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 DASHES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), ":")
 """Of the curves in a figure, told apart with any colour vision and without colours."""
-WAYS = {
-    "rolling": ("#0072B2", "-"),
-    "twisting": ("#D55E00", "--"),
-    "sliding": ("#009E73", "-."),
-    "damping": ("#8A8A8A", ":"),
-    "made": ("#E69F00", (0, (5, 1, 1, 1, 1, 1))),
+USUAL_RATE = 3e-7
+"""Strain rate C_v of the sets that differ in their size; their curves are blue."""
+OF_SIZE = {1024: ("#56B4E9", "--"), 4096: ("#332288", "-."), 16384: ("#0072B2", "-")}
+"""Colour and dash of a set at the usual rate, by its number of monomers."""
+OF_RATE = {
+    3e-8: ("#CC79A7", DASHES[3]),
+    1e-7: ("#D55E00", ":"),
+    1e-6: ("#009E73", "-"),
+    3e-6: ("#E69F00", DASHES[3]),
+    1e-5: ("#555555", "--"),
 }
-"""Colour and dash of each way of dissipation."""
+"""Colour and dash of a set at another rate."""
+OTHERS = (("#882255", "--"), ("#117733", "-."), ("#999933", ":"), ("#44AA99", DASHES[3]), ("#AA4499", "-"))
+"""Colours and dashes of sets of other sizes or rates, and of a second set of one size or rate in a figure."""
 THIN = 0.5
-"""Width of a curve where it is not static [points]."""
-LEAST = 0.03
-"""Lower end of a band over its curve where the error is as great as the curve, which a logarithm cannot show."""
+"""Width of a curve where it is not static, or not sure [points]."""
+UNSURE = 0.5
+"""Error over the mean above which a curve is thin: a band on a logarithmic axis would hide the others."""
+BEFORE = 0.5
+"""Where a curve begins over where it is static from: looser, inertia is seen, and chance."""
+FEWEST = 3
+"""Clusters that a set needs for a band: two may be alike by chance."""
+UNTOLD = 0.3
+"""Error of a ratio of two pressures over the ratio above which it says nothing, and is not drawn."""
 PHI_LABEL = r"filling factor $\phi$"
 RATIO_LABEL = r"$P\,/\,(P_0\phi^3)$"
 
@@ -59,6 +71,34 @@ def power(value):
     return ten if mantissa == "1" else rf"{mantissa}\times{ten}"
 
 
+def looks_of(tables):
+    """Colour and dash of each set, the same in all figures, by its rate and, at the usual rate, by its size.
+
+    Returns
+    -------
+    list of (str, dash)
+    """
+    wanted = [_look(table) for table in tables]
+    found = [None if look in wanted[:k] else look for k, look in enumerate(wanted)]
+    for k, look in enumerate(found):
+        if look is None:
+            taken = [other[1] for other in found if other is not None]
+            free = [other for other in OTHERS if other[1] not in taken]
+            found[k] = free[0] if free else OTHERS[k % len(OTHERS)]
+    return found
+
+
+def _look(table):
+    """Colour and dash of a set, None where its size or rate has none."""
+    rate = float(f"{table['strain_rate'].values[0]:.3g}")
+    return OF_SIZE.get(table["n_monomers"].item()) if rate == USUAL_RATE else OF_RATE.get(rate)
+
+
+def looks_by_order(tables):
+    """Colour and dash of each set by its place, where neither size nor rate tells them apart."""
+    return [(COLOURS[k % 5], DASHES[k % 5]) for k in range(len(tables))]
+
+
 def damping_of(table):
     """k_n of a table."""
     return float(re.search(r"constant_damping=([0-9.e+-]+)", table.attrs["law"])[1])
@@ -74,54 +114,85 @@ def two_panels(title):
     return figure, above, below
 
 
-def draw_line(axes, table, color="black", label=r"$P_0\phi^3$"):
-    """P_0 phi^3 of a table, as far as its pressures go and somewhat on."""
+def draw_line(axes, table):
+    """P_0 phi^3 of a table, from the left end of the axes to somewhat beyond its pressures."""
     phi = table["phi"].values
-    phi = np.geomspace(phi[0], 1.3 * phi[np.isfinite(table["pressure"].values).any(axis=0)].max(), 50)
+    last = phi[np.isfinite(table["pressure"].values).any(axis=0)].max()
+    phi = np.geomspace(axes.get_xlim()[0], 1.3 * last, 50)
     values = compressive_strength_kataoka2013(phi, table["rolling_pressure"].values[0])
-    axes.plot(phi, values, color=color, lw=0.8, label=label)
+    axes.plot(phi, values, color="black", lw=0.8, label=r"$P_0\phi^3$")
 
 
-def draw_curves(above, below, tables, labels, *, alone=False):
-    """Mean pressures with bands of one standard error, into both panels; thin, without bands, where not static yet.
+def right_of_all(bad):
+    """Whether an entry lies right of all that are bad, (k,) bool."""
+    return ~np.logical_or.accumulate(bad[::-1])[::-1]
 
-    `below` may be None.
+
+def draw_curves(above, below, tables, labels, looks, *, alone=False):
+    """Mean pressures with bands of one standard error, into both panels, and the ends of the axes where they end.
+
+    Curves are thin, and have no band, where they are not static yet or where the error is more than half of the mean.
+    They begin at half the filling factor from which they are static, and where the mean stays above its error. Sets of
+    less than `FEWEST` clusters have no band.
+
+    Parameters
+    ----------
+    above, below : matplotlib.axes.Axes
+        `below`, for the pressures over P_0 phi^3, may be None.
+    tables : list of xarray.Dataset
+    labels : list of str
+    looks : list of (str, dash)
+    alone : bool
+        See `mean_pressure`.
     """
-    for k, (table, label) in enumerate(zip(tables, labels, strict=True)):
+    for table, label, (colour, dash) in zip(tables, labels, looks, strict=True):
         mean, error = mean_pressure(table, alone=alone)
-        phi = table["phi"].values
-        line = phi**3 * table["rolling_pressure"].values[0]
-        style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
-        for axes, unit in ((above, 1.0), (below, line)):
+        phi, static_from = table["phi"].values, table["static_from"].values[0]
+        if table.sizes["seed_number"] < FEWEST:
+            error = np.full(len(mean), np.nan)
+        there = right_of_all(mean <= np.nan_to_num(error)) & (phi > BEFORE * static_from)
+        sure = there & right_of_all((phi <= static_from) | (error > UNSURE * mean))
+        # up to the first sure one, so that the two parts of the curve meet
+        thin = there & ~np.concatenate([[False], sure[:-1]])
+        for axes, unit in ((above, 1.0), (below, phi**3 * table["rolling_pressure"].values[0])):
             if axes is None:
                 continue
-            value = np.where(mean > 0.0, mean, np.nan) / unit
-            static = phi > table["static_from"].values[0]
-            axes.plot(phi, np.where(static, value, np.nan), label=label, **style)
-            axes.plot(phi, value, color=style["color"], lw=THIN)
-            low, high = (np.maximum(mean + sign * error, LEAST * np.abs(mean)) / unit for sign in (-1, 1))
-            shown = static & (mean > 0.0)
-            axes.fill_between(phi, np.where(shown, low, np.nan), high, color=COLOURS[k % 5], alpha=0.2, lw=0)
+            axes.plot(phi, np.where(sure, mean / unit, np.nan), color=colour, ls=dash, label=label)
+            axes.plot(phi, np.where(thin, mean / unit, np.nan), color=colour, lw=THIN)
+            low, high = (np.where(sure, mean + sign * error, np.nan) / unit for sign in (-1, 1))
+            axes.fill_between(phi, low, high, color=colour, alpha=0.2, lw=0)
+    points = _points(above)
+    if len(points):
+        above.set(xlim=(0.9 * points[:, 0].min(), None), ylim=(0.5 * points[:, 1].min(), None))
 
 
-def draw_over(axes, tables, which, label):
+def _points(axes):
+    """All finite points of the lines in some axes but of those across, (k, 2)."""
+    points = np.concatenate([line.get_xydata() for line in axes.lines if len(line.get_xdata()) > 2])
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def draw_over(axes, tables, looks, which, label):
     """Mean pressures over that of one of the sets, of the same clusters, with bands of one standard error.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
+        With the filling factors that are shown in place.
     tables : list of xarray.Dataset
-        In the colours and dashes that `draw_curves` gives them.
+    looks : list of (str, dash)
     which : int
         Which of them the others are divided by.
     label : str
         Of the axis.
     """
-    for k, table in enumerate(tables):
+    for k, (table, (colour, dash)) in enumerate(zip(tables, looks, strict=True)):
         if k != which:
             phi, ratio, error = over(table, tables[which])
-            axes.plot(phi, ratio, color=COLOURS[k % 5], ls=DASHES[k % 5])
-            axes.fill_between(phi, ratio - error, ratio + error, color=COLOURS[k % 5], alpha=0.2, lw=0)
+            told = right_of_all(error > UNTOLD * ratio) & (phi > axes.get_xlim()[0])
+            phi, ratio, error = phi[told], ratio[told], error[told]
+            axes.plot(phi, ratio, color=colour, ls=dash)
+            axes.fill_between(phi, ratio - error, ratio + error, color=colour, alpha=0.2, lw=0)
     axes.set(yscale="linear", ylabel=label)
 
 
@@ -145,15 +216,11 @@ def over(table, other):
 def finish(figure, above, below=None):
     """Readable logarithmic axes, and the legend."""
     logarithmic(above.xaxis)
-    low = max(above.get_ylim()[0], 1e-2)
-    above.set_ylim(bottom=low)
     logarithmic(above.yaxis)
     above.legend(loc="upper left")
     if below is not None:
-        # of what is static, which is not thin
-        static = [line for line in below.lines if line.get_linewidth() > THIN]
-        highest = max(np.nanmax(line.get_ydata(), initial=1.0) for line in static)
-        below.set_ylim(0.1, max(3.0, 1.3 * highest))
+        ratios = _points(below)[:, 1]
+        below.set_ylim(0.5 * ratios.min(initial=0.5), 1.25 * ratios.max(initial=2.0))
         logarithmic(below.yaxis)
     return figure
 
@@ -161,13 +228,9 @@ def finish(figure, above, below=None):
 def pressures(tables, labels, title, *, alone=False):
     """The figure of mean pressures of some sets that share P_0."""
     figure, above, below = two_panels(title)
-    draw_curves(above, below, tables, labels, alone=alone)
-    _line_and_left_end(above, tables)
-    finish(figure, above, below)
-    if alone:
-        # the loosest clusters press least
-        below.set_ylim(bottom=0.03)
-    return figure
+    draw_curves(above, below, tables, labels, looks_of(tables), alone=alone)
+    draw_line(above, tables[0])
+    return finish(figure, above, below)
 
 
 def pressures_over(tables, labels, title, which, quotient, limits):
@@ -188,14 +251,9 @@ def pressures_over(tables, labels, title, which, quotient, limits):
         Of the axis below.
     """
     figure, above, below = two_panels(title)
-    draw_curves(above, None, tables, labels)
-    _line_and_left_end(above, tables)
-    draw_over(below, tables, which, quotient)
+    looks = looks_by_order(tables)
+    draw_curves(above, None, tables, labels, looks)
+    draw_line(above, tables[0])
+    draw_over(below, tables, looks, which, quotient)
     below.set_ylim(*limits)
     return finish(figure, above)
-
-
-def _line_and_left_end(axes, tables):
-    draw_line(axes, tables[0])
-    # little of what is not static: there inertia is seen, and chance
-    axes.set_xlim(left=0.6 * min(table["static_from"].values[0] for table in tables))

@@ -23,7 +23,7 @@ def fewer_steps(tables):
         labels.append(f"{name}, {float(table['steps'].mean()) / 1e3:,.0f} thousand steps")
     about = f"{tables[0].attrs['material']}, {seeds_text(tables[0])}, {strain_text(tables[0])}"
     explicit = next((k for k, table in enumerate(tables) if longest_step(table) is None), 0)
-    return pressures_over(tables, labels, about, explicit, r"$P\,/\,P$(explicit)", (0.4, 1.4))
+    return pressures_over(tables, labels, about, explicit, r"$P\,/\,P$(explicit)", (0.5, 1.3))
 
 
 def draw(files, settings):

@@ -10,7 +10,7 @@ from ratd.pictures.style import GREY, ONE_COLUMN, empty, logarithmic, new_figure
 @styled
 def figure11(table, wanted=(0.003, 0.01, 0.03, 0.1)):
     """N(<r) at some filling factors, mean over seeds; thin, phi (r/r_0)^3; grey, a slope of 2."""
-    figure = new_figure(ONE_COLUMN, ONE_COLUMN, f"{table.attrs['material']}, {seeds_text(table)}")
+    figure = new_figure(ONE_COLUMN, 1.15 * ONE_COLUMN, f"{table.attrs['material']}, {seeds_text(table)}")
     axes = figure.subplots()
     distance, found = table["distance"].values, table["snapshot_phi"].values
     kept = snapshots_at(found, wanted)
@@ -30,7 +30,7 @@ def figure11(table, wanted=(0.003, 0.01, 0.03, 0.1)):
     axes.set(xscale="log", yscale="log", xlabel=r"distance $r/r_0$", ylabel=r"$N(<r)$", ylim=(1, 6 * n), xlim=(2, 200))
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
-    axes.legend(loc="lower right")
+    figure.legend(loc="outside lower center", ncols=2)
     return figure
 
 

@@ -41,13 +41,13 @@ def figure3(snapshots):
         x = 0.5 * length / UM
         axes.plot([-x, x, x, -x, -x], [-x, -x, x, x, -x], color="black", lw=0.8)
         axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
-        axes.set_title(rf"$\phi$ = {snapshots['phi'].values[k]:.2g}, $L$ = {2 * x:.3g} $\mu$m")
+        axes.set_title(rf"$\phi$ = {snapshots['phi'].values[k]:.2g}, $L$ = {2 * x:.3g} µm")
         axes.set_axis_off()
         if k == 0:
             bar = scale_length(0.5 * edge)
             axes.plot([0.95 * edge - bar, 0.95 * edge], [-0.95 * edge] * 2, color="black", lw=1.6)
             axes.text(
-                0.95 * edge - 0.5 * bar, -0.9 * edge, rf"{bar:g} $\mu$m", ha="center", va="bottom",
+                0.95 * edge - 0.5 * bar, -0.9 * edge, f"{bar:g} µm", ha="center", va="bottom",
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.5},
             )  # fmt: skip
     return figure

@@ -13,7 +13,7 @@ def figure7(tables):
     labels = [rf"$k_\mathrm{{n}}$ = {damping_of(table):g}, {runs_text(table)}" for table in tables]
     title = f"{tables[0].attrs['material']}, N = {tables[0]['n_monomers'].item()}, {strain_text(tables[0])}"
     quotient = rf"$P\,/\,P(k_\mathrm{{n}} = {damping_of(tables[middle]):g})$"
-    return pressures_over(tables, labels, title, middle, quotient, (0.6, 1.4))
+    return pressures_over(tables, labels, title, middle, quotient, (0.7, 1.3))
 
 
 def draw(files, settings):

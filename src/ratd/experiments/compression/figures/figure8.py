@@ -2,11 +2,16 @@
 
 import numpy as np
 
-from ratd.experiments.compression.figures.common import LEAST, PHI_LABEL, WAYS, damping_of, read_sets, strain_text
+from ratd.experiments.compression.figures.common import DASHES, PHI_LABEL, damping_of, read_sets, strain_text
 from ratd.experiments.compression.losses import rates
 from ratd.experiments.compression.strength import of_clusters
-from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
+from ratd.pictures.style import ENERGY_COLOURS, ONE_COLUMN, logarithmic, new_figure, styled
 
+WAY_DASHES = dict(zip(("rolling", "twisting", "sliding", "made", "damping"), DASHES, strict=True))
+LOWEST = 1e-21
+"""Lower end of the axis of energy [J]."""
+LEAST = 0.03
+"""Lower end of a band over its curve where the error is as great as the curve, which a logarithm cannot show."""
 NAMES = {"damping": "damping and long steps", "made": "new contacts"}
 """What a curve is called where it is more than its name says."""
 
@@ -15,13 +20,14 @@ def panel(axes, table, text):
     """Energy dissipated while ln phi grows by 1, over N, by way, with bands of one standard error."""
     phi, _ = rates(table, ())
     n = table["n_monomers"].item()
-    for way, (colour, dash) in WAYS.items():
+    for way, colour in ENERGY_COLOURS.items():
         found = of_clusters(table.sizes["seed_number"], lambda own, way=way: rates(table, (way,), own)[1][way] / n)
         rate = np.where(found.value > 0.0, found.value, np.nan)
-        axes.plot(phi, rate, color=colour, ls=dash, label=NAMES.get(way, way))
-        low = np.maximum(rate - found.error, LEAST * rate)
+        axes.plot(phi, rate, color=colour, ls=WAY_DASHES[way], label=NAMES.get(way, way))
+        # a curve below the axis has no band that reaches into it
+        low = np.where(rate > LOWEST, np.maximum(rate - found.error, LEAST * rate), np.nan)
         axes.fill_between(phi, low, rate + found.error, color=colour, alpha=0.2, lw=0)
-    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(1e-21, 3e-14), xlim=(phi[0], 0.5))
+    axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, ylim=(LOWEST, 3e-14), xlim=(phi[0], 0.5))
     axes.set_title(text)
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)

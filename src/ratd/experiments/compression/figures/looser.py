@@ -3,10 +3,9 @@
 import numpy as np
 
 from ratd.experiments.compression.figures.common import (
-    COLOURS,
-    DASHES,
     PHI_LABEL,
     RATIO_LABEL,
+    looks_of,
     read_sets,
     seeds_text,
     strain_text,
@@ -18,7 +17,7 @@ from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure, styled
 MACH = 0.2
 """Speed of the faces of the box over that of sound at which each curve has its mark."""
 SMOOTH = 9
-"""Bins of which a curve is the mean, a quarter in phi."""
+"""Bins of which a curve is the mean: those within a fifth in phi."""
 LOOSE = (0.0018, 0.05)
 """Filling factors that are shown."""
 
@@ -29,22 +28,21 @@ def looser(tables):
 
     A mark stands where the faces of the box move at `MACH` times the speed of sound; right of it they are slower.
     """
-    figure = new_figure(ONE_COLUMN, 0.85 * ONE_COLUMN, f"loose clusters of {tables[0].attrs['material']}")
+    figure = new_figure(ONE_COLUMN, 1.1 * ONE_COLUMN, f"loose clusters of {tables[0].attrs['material']}")
     axes = figure.subplots()
-    for k, table in enumerate(tables):
+    for table, (colour, dash) in zip(tables, looks_of(tables), strict=True):
         phi, (value, error) = _smooth(table)
-        style = {"color": COLOURS[k % 5], "ls": DASHES[k % 5]}
-        axes.plot(phi, value, label=f"{seeds_text(table)}, {strain_text(table)}", **style)
-        axes.fill_between(phi, value - error, value + error, color=COLOURS[k % 5], alpha=0.2, lw=0)
+        axes.plot(phi, value, color=colour, ls=dash, label=f"{seeds_text(table)}, {strain_text(table)}")
+        axes.fill_between(phi, value - error, value + error, color=colour, alpha=0.2, lw=0)
         mark = _mark(table)
         if phi[0] < mark < phi[-1]:
-            axes.plot(mark, np.interp(mark, phi, value), "o", color=COLOURS[k % 5], ms=4.5, zorder=3)
+            axes.plot(mark, np.interp(mark, phi, value), "o", color=colour, ms=4.5, zorder=3)
     axes.plot([], [], "o", color="black", ms=4.5, label=f"faces at {MACH:g} times the speed of sound")
     axes.axhline(1.0, color="black", lw=0.8, label=r"$P_0\phi^3$, printed")
-    axes.set(xscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=LOOSE, ylim=(0.0, 2.0))
-    axes.set_yticks(np.arange(0.0, 1.1, 0.2))
+    axes.set(xscale="log", xlabel=PHI_LABEL, ylabel=RATIO_LABEL, xlim=LOOSE, ylim=(-0.1, 1.2))
+    axes.set_yticks(np.arange(0.0, 1.3, 0.2))
     logarithmic(axes.xaxis, labelled=(2, 5))
-    axes.legend(loc="upper left")
+    figure.legend(loc="outside lower center", ncols=1)
     return figure
 
 

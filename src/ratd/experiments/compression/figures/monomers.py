@@ -24,7 +24,7 @@ def monomers(equal, others, names):
             low, high = (mean - error) / line, (mean + error) / line
             axes.fill_between(table["phi"], low.clip(1e-3), high.clip(1e-3), color=COLOURS[k], alpha=0.2, lw=0)
         axes.axhline(1.0, color="black", lw=0.6)
-        axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, xlim=(0.018, 0.6), ylim=(0.05, 30), title=text)
+        axes.set(xscale="log", yscale="log", xlabel=PHI_LABEL, xlim=(0.018, 0.6), ylim=(0.03, 60), title=text)
         logarithmic(axes.xaxis)
         logarithmic(axes.yaxis)
     every[0].set_ylabel("$P$ / prediction")

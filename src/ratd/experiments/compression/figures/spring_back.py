@@ -2,7 +2,7 @@
 
 from matplotlib.ticker import MaxNLocator
 
-from ratd.experiments.compression.figures.common import COLOURS, DASHES, PHI_LABEL
+from ratd.experiments.compression.figures.common import COLOURS, DASHES
 from ratd.pictures.style import ONE_COLUMN, new_figure, styled
 
 LEAST = 0.4
@@ -12,7 +12,9 @@ WAYS = {"in": "box shrinks", "out": "box grows"}
 
 @styled
 def spring_back(table):
-    """Pressure against phi of each cluster, a panel for each phi at which the box turns.
+    """Pressure of each cluster against the volume of its box over that of its monomers, a panel for each turn.
+
+    Areas are the work of the box over the volume of the monomers, as they would not be against phi.
 
     Parameters
     ----------
@@ -25,11 +27,11 @@ def spring_back(table):
         part = table[(table["until_phi"] == turn) & (table["phi"] > LEAST * turn)]
         for (_, way), rows in part.groupby(["seed", "way"]):
             k = list(WAYS).index(way)
-            axes.plot(rows["phi"], rows["pressure"], color=COLOURS[k], ls=DASHES[k], lw=1.0)
+            axes.plot(1.0 / rows["phi"], rows["pressure"], color=COLOURS[k], ls=DASHES[k], lw=1.0)
         for k, label in enumerate(WAYS.values()):
             axes.plot([], [], color=COLOURS[k], ls=DASHES[k], label=label)
         axes.xaxis.set_major_locator(MaxNLocator(5))
         axes.axhline(0.0, color="black", lw=0.8)
-        axes.set(xlabel=PHI_LABEL, ylabel=r"pressure $P$ [Pa]")
-        axes.legend(loc="upper left")
+        axes.set(xlabel=r"volume of the box over that of the monomers, $1/\phi$", ylabel=r"pressure $P$ [Pa]")
+        axes.legend(loc="upper right")
     return figure
