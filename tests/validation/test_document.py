@@ -9,9 +9,21 @@ import pytest
 from pictures_alike import unlike
 from ratd.base.errors import FileError, InputError
 from ratd.base.measured import Measured
+from ratd.experiments.spin_up.figures.figure10 import LOOK
+from ratd.pictures.style import ONE_COLUMN
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill, slots
-from ratd.validation import damping, document, energy_step, findings, growth, lammps_findings, pull_off, relaxation
+from ratd.validation import (
+    damping,
+    document,
+    energy_step,
+    figures,
+    findings,
+    growth,
+    lammps_findings,
+    pull_off,
+    relaxation,
+)
 from ratd.validation.tables import CASE, as_dataset
 from tiny_pipeline import ROOT
 
@@ -54,6 +66,17 @@ def test_the_page_is_short_and_its_first_lines_tell_what_is_open():
     answer = " ".join(lines[:11])
     assert all(word in answer for word in ("something outside this code", "largest known error", "open"))
     assert text.count("| open |") == 6 and text.count("| missed |") == 6 and "Six are open" in answer
+
+
+def test_figures_are_as_wide_as_columns_and_pairs_look_as_in_the_reproduction(tables):
+    for check, draw in (("damping", figures.viscous_time), ("literal", figures.late_coriolis)):
+        assert draw(tables[check]).get_figwidth() == ONE_COLUMN
+    axes = figures.apart(tables["pull_off"]).axes[0]
+    found = {line.get_label(): line for line in axes.get_lines()}
+    for start in ("damped", "undamped"):
+        line = found[f"not waiting, {start}"]
+        assert (line.get_marker(), line.get_color()) == (LOOK[start]["marker"], LOOK[start]["color"])
+    assert found["waiting (the default)"].get_color() == "black"
 
 
 def test_another_verdict_is_an_error(tables, template):

@@ -13,6 +13,7 @@ from ratd.engine.state import monomer_rows
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up import pulled as told
 from ratd.experiments.spin_up.figures.pulled import pulled as drawn
+from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.plan import load
 from ratd.pipeline.queue import work
@@ -163,4 +164,7 @@ def test_figure_has_three_panels_with_all_grains():
     for axes in panels:
         points = [line for line in axes.lines if line.get_label() in ("BA", "BAM1")]
         assert [len(line.get_xdata()) for line in points] == [6, 6]
+        means = [c[0] for c in axes.containers if len(c[0].get_xdata())]
+        assert [mean.get_marker() for mean in means] == [TYPE_MARKER["BA"], TYPE_MARKER["BAM1"]]
+        assert {mean.get_markerfacecolor() for mean in means} == {"white"}
     assert panels[0].get_ylabel() and all(axes.get_xlabel() for axes in panels)

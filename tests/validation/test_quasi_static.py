@@ -82,6 +82,20 @@ def test_the_page_and_its_figures_are_those_of_the_data(tmp_path):
     assert unlike(tmp_path / quasi_static_document.FIGURES, ROOT / quasi_static_document.FIGURES) == []
 
 
+def test_drags_are_told_apart_without_colour_and_numbers_have_a_true_minus():
+    table, looks = (
+        pd.read_csv(ROOT / quasi_static_document.DATA / f"{check}.csv") for check in ("quasi_static", "remnant")
+    )
+    figure = quasi_static_document.turning(looks)
+    for axes in figure.axes:
+        assert [line.get_linestyle() for line in axes.get_lines()] == ["-", "--"]
+        assert axes.get_lines()[0].get_color() == "black"
+    assert [text.get_text() for text in figure.legends[0].texts] == ["drag $c$ = 1", "drag $c$ = 0.3"]
+    (axes,) = quasi_static_document.strips(table).axes
+    said = [text.get_text() for text in axes.get_xticklabels()]
+    assert "\N{MINUS SIGN}50" in said and not any("-" in text for text in said)
+
+
 def test_collect_names_the_table_that_is_missing(tmp_path):
     with pytest.raises(FileError, match="quasi_static.csv: is missing; `snakemake --cores 2"):
         quasi_static_document.collect(tmp_path, tmp_path / "data")

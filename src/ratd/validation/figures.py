@@ -4,6 +4,7 @@ import numpy as np
 
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.cells import TYPES
+from ratd.experiments.spin_up.figures.figure10 import LOOK
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, TWO_COLUMNS, logarithmic, new_figure, styled
@@ -13,10 +14,11 @@ from ratd.validation.findings import off_the_answer, ratios, runs_of_solid_grain
 __all__ = ["apart", "bounds", "late_coriolis", "steps", "viscous_time"]
 
 STARTS = {
-    "waiting": ("waiting (the default)", "#0072B2", "o"),
-    "damped": ("not waiting, damped", "#D55E00", "s"),
-    "undamped": ("not waiting, undamped", "#000000", "x"),
+    "damped": ("not waiting, damped", LOOK["damped"]),
+    "undamped": ("not waiting, undamped", LOOK["undamped"]),
+    "waiting": ("waiting (the default)", {"color": "black", "marker": "x"}),
 }
+"""How a pair is spun up -> its name, and how it looks: as in figure 10 of the reproduction where that has it."""
 
 
 def _spread(count, width):
@@ -30,11 +32,11 @@ def apart(table):
     pairs = off_the_answer(table)
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, "Two monomers that are spun up until they part")
     panels = figure.subplots(1, 2, sharey=True)
-    for start, (label, colour, marker) in STARTS.items():
+    for start, (label, look) in STARTS.items():
         part = pairs[pairs["start"] == start]
         same = part[part["radius_1"] == part["radius_2"]]
         other = part.drop(same.index)
-        style = dict(color=colour, linestyle="none", marker=marker, markersize=2.8, alpha=0.7)
+        style = look | {"linestyle": "none", "ms": 3.0, "mew": 0.7}
         panels[0].plot(same["radius_1"] * 1e9, 100 * same["off"], label=label, **style)
         panels[1].plot(other["radius_2"] / other["radius_1"], 100 * other["off"], **style)
     panels[0].set_ylabel("$\\omega$ over the exact answer, less 1 [%]")
@@ -108,8 +110,8 @@ def bounds(table):
 @styled
 def viscous_time(table):
     """Figure: what a longer viscous time does, by the rate of the spin-up."""
-    figure = new_figure(ONE_COLUMN * 1.35, 0.9 * ONE_COLUMN, "Viscous time of 9 ps in place of 5 ps (a-C, 100 nm)")
-    waiting, axes = figure.subplots(1, 2, sharey=True, width_ratios=(1, 5))
+    figure = new_figure(ONE_COLUMN, 0.95 * ONE_COLUMN, "Viscous time of 9 ps in place of 5 ps (a-C, 100 nm)")
+    waiting, axes = figure.subplots(1, 2, sharey=True, width_ratios=(1, 4))
     shown = {
         ("BAM2", "omega_disr"): ("BAM2, peak of the stress", "#0072B2", "^"),
         ("BAM2", "omega_mass_75"): ("BAM2, a quarter lost", "#56B4E9", "v"),
@@ -132,7 +134,7 @@ def viscous_time(table):
     logarithmic(axes.xaxis)
     waiting.set_xlim(-0.5, 0.5)
     waiting.set_xticks([0.0], ["waiting"])
-    axes.set_xlabel(r"rate $\varepsilon$ of a spin-up that does not wait")
+    axes.set_xlabel(r"rate $\varepsilon$, not waiting")
     waiting.set_ylabel("rise of $\\omega$ [%]")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
@@ -142,9 +144,8 @@ def viscous_time(table):
 def late_coriolis(table):
     """Figure: the drive literal beside what a solid grain gives."""
     runs = runs_of_solid_grains(table)
-    figure = new_figure(
-        ONE_COLUMN * 1.35, 0.85 * ONE_COLUMN, "Printed terms of the frame, Coriolis force half a step late"
-    )
+    title = "Printed terms of the frame,\nCoriolis force half a step late"
+    figure = new_figure(ONE_COLUMN, 0.85 * ONE_COLUMN, title)
     axes = figure.subplots()
     for kind in TYPES:
         part = runs[runs["type"] == kind]
@@ -156,6 +157,6 @@ def late_coriolis(table):
     axes.set_xscale("log")
     logarithmic(axes.xaxis)
     axes.set_xlabel("$\\omega$ of the first loss over that of the driven model")
-    axes.set_ylabel("over that of a solid grain, less 1 [%]")
+    axes.set_ylabel("over that of a solid\ngrain, less 1 [%]")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

@@ -385,7 +385,7 @@ def strips(table):
     axes.axvline(0.0, color=GREY, linewidth=0.6, zorder=0)
     axes.set_xscale("symlog", linthresh=1.0)
     ticks = [-50, -10, -1, -0.5, 0, 0.5, 1, 10, 50]
-    axes.set_xticks(ticks, [f"{tick:+g}" if tick else "0" for tick in ticks])
+    axes.set_xticks(ticks, [f"{tick:+g}".replace("-", "\N{MINUS SIGN}") if tick else "0" for tick in ticks])
     axes.minorticks_off()
     axes.set_xlim(-60, 90)
     axes.set_yticks(range(len(names)), names)
@@ -406,14 +406,13 @@ def turning(looks):
     kind, seed = counts.idxmax()
     figure = new_figure(TWO_COLUMNS, 0.5 * TWO_COLUMNS, f"What is left of a {kind} grain turns into its own axis")
     above, below = figure.subplots(2, 1, sharex=True)
-    for drag, colour in ((1.0, TYPE_COLOUR["BAM2"]), (0.3, TYPE_COLOUR["BA"])):
+    for drag, look in ((1.0, {"color": "black"}), (0.3, {"color": GREY, "ls": (0, (3, 1)), "lw": 1.2})):
         run = looks[(looks["type"] == kind) & (looks["seed"] == seed) & (looks["drag"] == drag)]
         if not len(run):
             continue
-        above.plot(
-            run["turns"], 100 * run["mass_fraction"], color=colour, drawstyle="steps-post", label=f"c = {drag:g}"
-        )
-        below.plot(run["turns"], np.degrees(run["tilt"]), color=colour)
+        label = f"drag $c$ = {drag:g}"
+        above.plot(run["turns"], 100 * run["mass_fraction"], drawstyle="steps-post", label=label, **look)
+        below.plot(run["turns"], np.degrees(run["tilt"]), **look)
     above.set_ylabel("mass left [%]")
     above.set_ylim(0, 104)
     below.set_ylabel("tilt [°]")

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
@@ -10,8 +11,9 @@ from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.figures.fragments import cumulative, fragments, shares
 from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import over_the_paper, overview
-from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
+from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER, open_markers
 from ratd.experiments.spin_up.findings.law import of_curve
+from ratd.experiments.spin_up.fragmentation import fragment_shares, size_class
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
 from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS
@@ -76,9 +78,26 @@ def test_overview_has_a_bound_a_type_and_a_panel_for_the_other_drive(table):
         for axes in (left, right):
             (line,) = [x for x in axes.get_lines() if x.get_color() == TYPE_COLOUR[kind] and x.get_linestyle() == "--"]
             np.testing.assert_allclose(line.get_ydata(), 2 * factor)
+            # told apart without colour, and by no sign that hides a point
+            (sign,) = [
+                x for x in axes.get_lines() if x.get_markerfacecolor() == "white" and x.get_color() == line.get_color()
+            ]
+            assert sign.get_marker() == TYPE_MARKER[kind] and len(sign.get_xdata()) > 2
+            np.testing.assert_allclose(sign.get_ydata(), 2 * factor)
+            assert np.abs(np.subtract.outer(sign.get_xdata(), markers(axes, kind)[0].get_xdata())).min() > 20
     (legend,) = figure.legends
     assert sum("bound" in text.get_text() for text in legend.texts) == 1
     assert not any("bound" in text.get_text() for text in overview(table, literal).legends[0].texts)
+
+
+def test_open_markers_lie_on_the_line_whatever_its_length():
+    for n in range(5):
+        axes = Figure().subplots()
+        x = np.arange(1.0, n + 1.0)
+        open_markers(axes, x, 10.0**x, {"marker": "o", "color": "black"})
+        (signs,) = axes.get_lines()
+        np.testing.assert_allclose(np.log10(signs.get_ydata()), signs.get_xdata())
+        assert len(signs.get_xdata()) == (n > 1)
 
 
 def test_overview_needs_a_grain_that_the_paper_has(table):
@@ -138,7 +157,25 @@ def test_fragments_are_counted_by_the_grain():
     assert found["mass_fraction"].tolist() == [0.01, 0.2, 0.3, 0.5]
     assert found["number"].tolist() == [2.0, 1.5, 1.0, 0.5]
     assert cumulative(table.assign(weight=[1.5, 1.5, 1.5, 0.5]))["number"].tolist() == [2.5, 1.75, 1.0, 0.25]
-    assert list(shares(table).values()) == pytest.approx([0.01 / 1.01, 0.7 / 1.01, 0.3 / 1.01])
+    assert [share for share, _ in shares(table).values()] == pytest.approx([0.01 / 1.01, 0.7 / 1.01, 0.3 / 1.01])
+
+
+def test_shares_have_the_error_of_a_bootstrap_over_grains():
+    table = make_fragments()
+    table = table[(table["type"] == "BAM2") & (size_class(table["a_eff"]) == "50 to 150 nm")]
+    other = fragment_shares(table, "half").set_index("class")
+    found = shares(table[table["half"]])
+    for name, same in (("single monomers", "1 monomer"), ("more than 10", "more than 10")):
+        assert found[name].value == pytest.approx(other.loc[same, "mass_share"])
+        assert found[name].error == pytest.approx(other.loc[same, "mass_share_error"], rel=0.25)
+    assert all(np.isnan(error) for _, error in shares(table[table["grain"] == table["grain"].iloc[0]]).values())
+
+
+def test_fragments_tell_the_greatest_error_of_their_bars():
+    table = make_fragments()
+    part = table[table["half"] & (size_class(table["a_eff"]) == "50 to 150 nm")]
+    most = max(error for kind in FACTOR for _, error in shares(part[part["type"] == kind]).values())
+    assert f"standard errors up to {100 * most:.2g}" in fragments(table, "prescribed").axes[3].get_xlabel()
 
 
 def test_fragments_have_a_column_a_class_and_the_slope_of_the_power_law():

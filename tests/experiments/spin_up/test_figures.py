@@ -22,7 +22,7 @@ from ratd.aggregates.strength import tensile_strength_tatsuuma2019
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cells import cell_statistics
-from ratd.experiments.spin_up.eq33 import eq33, fit_ensemble
+from ratd.experiments.spin_up.eq33 import eq33, eq33_omega, fit_ensemble
 from ratd.experiments.spin_up.figures.figure2 import figure2
 from ratd.experiments.spin_up.figures.figure4 import figure4
 from ratd.experiments.spin_up.figures.figure6 import axis_ratios, figure6
@@ -385,6 +385,10 @@ def test_figure7_draws_the_fit_and_the_printed_table():
     args = (sizes, m.surface_energy, m.density, 20e-9, contacts, 1.0)
     np.testing.assert_allclose(printed.get_ydata(), eq33(*args, *TABLE_3["q-S", "BAM2"]))
     assert (solid.get_linestyle(), printed.get_linestyle()) == ("-", "--")
+    (signs,) = lines(panel, color=TYPE_COLOUR["BAM2"], markerfacecolor="white")  # of the printed line
+    assert signs.get_marker() == TYPE_MARKER["BAM2"] and len(signs.get_xdata()) > 2
+    on_it = np.exp(np.interp(signs.get_xdata(), printed.get_xdata(), np.log(printed.get_ydata())))
+    np.testing.assert_allclose(signs.get_ydata(), on_it)
 
 
 def test_figure7_has_the_ratio_to_the_printed_table_below():
@@ -401,6 +405,19 @@ def test_figure7_has_the_ratio_to_the_printed_table_below():
         np.testing.assert_allclose(ends[:, k], ratio.quantile(part))
     other = figure7(table.assign(material="forsterite"))
     assert "no grain that Table 3 has" in words(other)
+
+
+def test_figure7_numbers_both_ends_of_ratios_that_differ_little(monkeypatch):
+    table = make_table(seeds=2, scatter=0.0)
+    paper = eq33_omega(table, TABLE_3, 20e-9)
+    few = {"BA": 0.35, "BAM1": 1.0, "BAM2": 1.8}
+    figure = figure7(table.assign(omega_disr=paper * table["type"].map(few)))
+    axes = figure.axes[3]
+    shown = {
+        text.get_text() for text, _ in drawn_texts(figure, monkeypatch) if text in axes.get_yticklabels(minor=True)
+    }
+    shown |= {text.get_text() for text in axes.get_yticklabels()}
+    assert {"0.5", "0.7", "1", "2"} <= shown
 
 
 def test_figure7_takes_what_needs_no_spin_up_from_all_grown_grains():
@@ -499,7 +516,11 @@ def test_figure10_has_the_materials_in_the_order_of_the_other_figures():
 
 def test_the_lines_of_figure10_are_not_hidden():
     pairs = made_up_pairs(("q-S",))
-    top, bottom = figure10(pairs).axes
+    figure = figure10(pairs)
+    top, bottom = figure.axes
+    # that few are shown is told, and how the pairs were spun up
+    assert "80 pairs" in figure.get_suptitle() and "above 9 of them" in figure.get_suptitle()
+    assert "$f$ = 0.05" in figure.get_suptitle() and words(figure).count(r"$\epsilon$ = 0.005") == 2
     for marker, start in (("o", "damped"), ("s", "undamped")):
         (few,), (every,) = (lines(axes, marker=marker) for axes in (top, bottom))
         here = pairs[pairs["start"] == start]

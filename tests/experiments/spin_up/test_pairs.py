@@ -52,5 +52,6 @@ def test_figure10_shows_both_starts_and_their_errors(table):
     assert [text.get_text() for text in panels[0].texts] == ["never parted: 1"] and not panels[1].texts
     (blue,) = [line for line in panels[3].get_lines() if line.get_marker() == "o"]
     here = table[(table["material"] == "co-S") & (table["start"] == "damped")]
-    expected = 100 * (1 - here["parting_omega"] / here["force_controlled_omega"])
+    expected = 100 * (here["parting_omega"] / here["force_controlled_omega"] - 1)
     np.testing.assert_allclose(blue.get_ydata(), expected)
+    assert "over its line" in panels[2].get_ylabel()

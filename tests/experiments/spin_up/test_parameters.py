@@ -16,6 +16,7 @@ from ratd.experiments.spin_up.parameters import PARAMETER_COLUMNS, effect, param
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.run import spin_up
 from ratd.experiments.spin_up.same_grains import of_material, spin_up_ways, steps_to, way_material
+from ratd.pictures.style import GREY
 from ratd.pipeline import blocks, io
 from ratd.pipeline.jobs import Job
 
@@ -81,6 +82,7 @@ def test_figure9_shows_medians_with_their_errors_on_one_axis(table):
     rolling, viscous = figure.axes
     assert rolling.get_ylim() == viscous.get_ylim() and "paper's value" in rolling.get_ylabel()
     found = effect(every, "xi_c", "omega_disr")
+    found = found[~np.isclose(found["value"], 0.2e-9, atol=0.0)]  # the paper's value, where it is 1 by definition
     points, _, (bars,) = rolling.containers[0]
     np.testing.assert_allclose(points.get_ydata(), found["median"])
     ends = np.array([segment[:, 1] for segment in bars.get_segments()])
@@ -102,6 +104,16 @@ def test_figure9_names_the_paper_and_what_its_markers_mean(table):
     # filled and open markers of one value stand side by side
     places = [line.get_xdata()[0] for line in figure.axes[1].get_lines() if line.get_marker() == "^"]
     assert len(places) == len(set(places)) == 2
+
+
+def test_figure9_has_one_mark_at_the_values_of_the_paper_and_no_point(table):
+    for axes, own in zip(figure9(table).axes, (0.2, 5.0), strict=True):
+        (mark,) = [line for line in axes.get_lines() if line.get_color() == GREY]
+        np.testing.assert_allclose(mark.get_xydata(), [[own, 1.0]])
+        assert mark.get_markerfacecolor() == "white"
+        assert "1 by definition" in [text.get_text() for text in axes.texts]
+        points = np.concatenate([container[0].get_xdata() for container in axes.containers])
+        assert len(points) == 2 and not np.isclose(points, own, rtol=0.1).any()
 
 
 def test_a_run_ends_where_it_is_told_to():

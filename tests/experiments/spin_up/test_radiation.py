@@ -5,13 +5,15 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import to_rgb
 from scipy.constants import Boltzmann, Planck, speed_of_light
 from scipy.integrate import quad
 
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.eq33 import eq33_omega
-from ratd.experiments.spin_up.figures.radiation import radiation
+from ratd.experiments.spin_up.figures.radiation import SIZES, STRENGTHS, radiation
+from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
 from ratd.experiments.spin_up.findings.radiation import NONE, of_radiation
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.radiation import (
@@ -316,7 +318,7 @@ def test_figure_shows_ours_below_the_printed_law(table, tmp_path):
     assert [axes.get_title() for axes in figure.axes] == ["a-C", "q-S", "co-S"]
     assert "above a line" in figure.get_suptitle()
     for axes in figure.axes:
-        drawn = [line for line in axes.lines if len(line.get_xdata()) > 2]
+        drawn = [line for line in axes.lines if len(line.get_xdata()) == len(STRENGTHS)]
         assert len(drawn) == 3 * 2 * 2
         ours, printed = (np.array([line.get_ydata() for line in drawn[k::4]]) for k in (0, 2))
         both = np.isfinite(ours) & np.isfinite(printed)
@@ -324,6 +326,31 @@ def test_figure_shows_ours_below_the_printed_law(table, tmp_path):
         inside = np.concatenate([ours, printed])
         assert np.nanmin(inside) >= 50 and np.nanmax(inside) <= 550
     save(figure, tmp_path / "radiation.png", tmp_path / "radiation.pdf")
+
+
+def test_lines_of_the_figure_have_the_marker_of_their_type_and_bars_up_to_the_stronger_drag(table):
+    figure = radiation(table, table)
+    one = table[table["material"] == "q-S"]
+    axes = figure.axes[1]
+    lines = [line for line in axes.lines if len(line.get_xdata()) == len(STRENGTHS)]
+    for (kind, marker), ours, printed in zip(TYPE_MARKER.items(), lines[::4], lines[2::4], strict=True):
+        assert ours.get_marker() == printed.get_marker() == marker
+        assert ours.get_markerfacecolor() == printed.get_color() == TYPE_COLOUR[kind]
+        assert printed.get_markerfacecolor() == "white"
+        (bars,) = [c for c in axes.containers if np.allclose(c[2][0].get_color()[0][:3], to_rgb(TYPE_COLOUR[kind]))]
+        for strength, (low, high) in ((bar[0, 0], bar[:, 1]) for bar in bars[2][0].get_segments() if len(bar)):
+            if np.isnan(low):
+                continue
+            ends = [
+                surviving(one, table, [strength], porous=porous, draws=0).query(f"law == 'ours' and type == '{kind}'")
+                for porous in (False, True)
+            ]
+            weaker, stronger = (end["a_disr"].item() for end in ends)
+            assert low == pytest.approx(1e9 * weaker)
+            assert high == pytest.approx(1e9 * min(stronger, 2 * SIZES[1])) if np.isfinite(stronger) else high > 700
+    # at no strength two of them have a marker
+    first, step = zip(*(line.get_markevery() for line in lines[::4]), strict=True)
+    assert len(set(first)) == 3 and set(step) == {26} and max(first) < 26
 
 
 def test_light_turns_a_grain_within_the_time_that_all_drag_takes_to_stop_it():

@@ -47,7 +47,8 @@ def figure10(table):
     Returns
     -------
     matplotlib.figure.Figure
-        The materials stand in the paper's order. Above, `SHOWN` pairs of each start, spread over the radii; below all.
+        The materials stand in the paper's order. Above, `SHOWN` pairs of each start, spread over the radii; below all,
+        over the reference of their start, less 1. The title tells f of the steps, the legend epsilon of the spin-ups.
 
     Raises
     ------
@@ -60,16 +61,17 @@ def figure10(table):
     """
     if not len(table):
         raise InputError("figure10: give at least one pair")
-    table = table.assign(error=100 * relative_error(table))
+    table = table.assign(over=-100 * relative_error(table))
     names = list(sort_cells(table[["material"]].drop_duplicates())["material"])
-    pairs = plural(table["monomer_radius"].nunique(), "pair")
-    how = [
-        rf"{start} $\epsilon$ = {part['epsilon'].iloc[0]:g}, f = {part['timestep_factor'].iloc[0]:g}"
-        for start, part in table.groupby("start", sort=False)
-    ]
+    radii = np.unique(table["monomer_radius"])
     wide = len(names) > 1
+    steps = ", ".join(f"{factor:g}" for factor in dict.fromkeys(table["timestep_factor"]))
     of_each = " of each material" if wide else ""
-    title = (", " if wide else "\n").join([f"{pairs} of equal monomers{of_each}, {drive_text('prescribed')}", *how])
+    title = (
+        f"{plural(len(radii), 'pair')} of equal monomers{of_each}, above {len(_spread(radii))} of them",
+        f"{drive_text('prescribed')}, $f$ = {steps}",
+    )
+    title = (", " if wide else "\n").join(title)
     figure = new_figure(TWO_COLUMNS if wide else ONE_COLUMN, 0.6 * TWO_COLUMNS, title)
     panels = figure.subplots(2, len(names), sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1])
     for (top, bottom), name in zip(panels.T, names, strict=True):
@@ -83,7 +85,7 @@ def figure10(table):
             few = _spread(part["monomer_radius"].to_numpy())
             x = nanometres(part["monomer_radius"])
             top.plot(x[few], part["parting_omega"].to_numpy()[few], ls="none", mew=0.6, zorder=2, **look | {"ms": 4.5})
-            bottom.plot(x, part["error"], ls="none", mew=0.6, **look)
+            bottom.plot(x, part["over"], ls="none", mew=0.6, **look)
         lost = int(here["parting_omega"].isna().sum())
         if lost:
             top.text(0.97, 0.95, f"never parted: {lost}", transform=top.transAxes, ha="right", va="top")
@@ -93,14 +95,19 @@ def figure10(table):
         bottom.set_xlabel("radius of both monomers [nm]")
     top.set_yscale("log")
     logarithmic(panels[0, 0].yaxis)
-    limit = 1.15 * max(100 * PAIR_ERROR, np.nanmax(np.abs(table["error"]), initial=0.0))
+    limit = 1.15 * max(100 * PAIR_ERROR, np.nanmax(np.abs(table["over"]), initial=0.0))
     panels[1, 0].set_ylim(-limit, limit)
     line = panels[1, 0].get_yaxis_transform()
     text = f"paper: {100 * PAIR_ERROR:g} %"
     panels[1, 0].text(0.98, 96 * PAIR_ERROR, text, transform=line, ha="right", va="top", color=GREY)
     panels[0, 0].set_ylabel(r"$\omega$ of parting [rad s$^{-1}$]")
-    panels[1, 0].set_ylabel("below its line [%]")
-    handles = [Line2D([], [], ls="none", label=f"{start} pairs", mew=0.6, **look) for start, look in LOOK.items()]
+    panels[1, 0].set_ylabel("over its line,\nless 1 [%]")
+    rates = table.groupby("start")["epsilon"].first()
+    handles = [
+        Line2D([], [], ls="none", label=rf"{start} pairs, $\epsilon$ = {rates[start]:g}", mew=0.6, **look)
+        for start, look in LOOK.items()
+        if start in rates
+    ]
     handles += [Line2D([], [], label=text, **line) for text, line in LINES.values()]
     figure.legend(handles=handles, loc="outside lower center", ncols=4 if wide else 2)
     return figure

@@ -15,7 +15,7 @@ from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_fi
 LIMITS = (8e6, 2e9)
 """omega [rad s-1] at the ends of the axis for the grains of the paper's figure, whatever turns them."""
 DOT = {"marker": "o", "ls": "none", "ms": 3.5, "mfc": HIGHLIGHT, "mec": "black", "mew": 0.4, "zorder": 5}
-REMNANT = 0.3
+REMNANT = 0.6
 """Opacity of a line, over that of the grain, once the largest fragment is less than half of it."""
 
 

@@ -28,6 +28,8 @@ MOMENTS = (0.1, 0.8, 1.0)
 CAMERA = view_axes((0, 0, 1), (0, 1, 0))
 """The pictures are seen along the axis of rotation."""
 MOVED = colormaps["YlGnBu"]
+START = (0.75, 0.75, 0.75)
+"""Colour of monomers in the picture from which displacements are counted, where none has moved."""
 LEAST = 0.1 * NM
 """Displacement [m] at the lower end of the scale, about the depth to which two monomers in contact overlap."""
 PIXELS = 720
@@ -57,8 +59,8 @@ def figure5(run, mark=None, drive=None):
     matplotlib.figure.Figure
         Seen along the axis of rotation, all on one scale. A column a snapshot, that nearest to each of `MOMENTS`; the
         columns tell at which omega/omega_disr it really is, and how much has parted. Above, the displacement since the
-        first snapshot of the run, beyond the motion as a rigid body (`displacements`); below, the normal force. A run
-        without omega_disr gives an empty panel that says so.
+        first snapshot of the run, beyond the motion as a rigid body (`displacements`); a picture of that one itself is
+        grey and says so. Below, the normal force. A run without omega_disr gives an empty panel that says so.
 
     Raises
     ------
@@ -86,14 +88,15 @@ def figure5(run, mark=None, drive=None):
     panels = figure.subplots(2, len(chosen), squeeze=False)
     how_far, pull = _moved_scale(moved), force_scale(shown)
     for column, k, at, frame, distance in zip(panels.T, chosen, places, shown, moved, strict=True):
-        colours = MOVED(how_far(np.maximum(distance, how_far.vmin)))[:, :3], force_colours(frame.force, pull)
-        _show(column, at, frame.radius, colours, box)
+        way = MOVED(how_far(np.maximum(distance, how_far.vmin)))[:, :3] if k else np.tile(START, (len(distance), 1))
+        _show(column, at, frame.radius, (way, force_colours(frame.force, pull)), box)
         column[0].set_title(_words(run, k, frame, omega_disr), pad=3)
         dropped = run.sizes["monomer"] - len(frame.radius)
         inside = np.array([1, -1, 1, -1]) * (np.repeat(at[:, :2], 2, axis=1) - box) > -frame.radius[:, None]
         away = int(np.sum(~inside.all(axis=1))) + dropped
-        if away:
-            column[0].text(0.03, 0.01, f"{away} flew off", transform=column[0].transAxes, zorder=3)
+        if away or not k:
+            text = f"{away} flew off" if away else "counted from here"
+            column[0].text(0.03, 0.01, text, transform=column[0].transAxes, zorder=3)
     _scale_bar(panels[1, 0], box)
     first = float(run["snapshot_omega"][0]) / omega_disr
     far = ScalarMappable(LogNorm(how_far.vmin / NM, how_far.vmax / NM), MOVED)

@@ -13,6 +13,7 @@ from ratd.experiments.spin_up.figures.style import (
     mean_and_range,
     middle_and_most,
     offsets,
+    open_markers,
     size_limits,
     sizes_label,
     type_style,
@@ -44,9 +45,10 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
     Returns
     -------
     matplotlib.figure.Figure
-        Above, means as markers, minima to maxima as bars; the fit solid; dashed Eq. 33 with the printed A and alpha
-        (Table 3, <a_mon> = 20 nm) for the N_con phi of the grown grains, of which the legend says how many. Below,
-        medians and the middle two thirds of omega_disr over that Eq. 33 for each grain itself, where Table 3 has it.
+        Above, means as markers, minima to maxima as bars; the fit solid; dashed, with the type's open marker, Eq. 33
+        with the printed A and alpha (Table 3, <a_mon> = 20 nm) for the N_con phi of the grown grains, of which the
+        legend says how many. Below, medians and the middle two thirds of omega_disr over that Eq. 33 for each grain
+        itself, where Table 3 has it.
 
     References
     ----------
@@ -82,7 +84,7 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
             empty(bottom, "no grain that Table 3 has")
     for axes, text in zip(panels[:, 0], (r"$\omega_\mathrm{disr}$ [rad s$^{-1}$]", _RATIO), strict=True):
         axes.set_ylabel(text)
-        logarithmic(axes.yaxis)
+        _label(axes)
     if len(cells):
         panels[0, 0].set_xlim(*nanometres(size_limits(cells["a_eff"])))
     _legend(figure, style, len(grown), wide, fit is not None and bool(np.isfinite(fit["A"]).any()))
@@ -90,6 +92,16 @@ def figure7(table, fit=None, drive=None, materials=None, grown=None):
 
 
 _RATIO = "over Eq. 33 as printed\nfor the same grain"
+
+
+def _label(axes):
+    """Numbers on the logarithmic axis of y; more of them, and room for those near its ends, on less than a decade."""
+    low, high = axes.get_ylim()
+    if high < 10 * low:
+        axes.set_ylim(low / 1.15, 1.15 * high)
+        logarithmic(axes.yaxis, labelled=(2, 3, 5, 7))
+    else:
+        logarithmic(axes.yaxis)
 
 
 def _absolute(axes, cells, at_rest, fit, style, shifts, materials):
@@ -110,6 +122,7 @@ def _absolute(axes, cells, at_rest, fit, style, shifts, materials):
         if (name, kind) in TABLE_3:
             line = _line(rest, material, PAPER_MEAN_RADIUS, *TABLE_3[name, kind])
             axes.plot(nanometres(rest["a_eff"]), line, color=look["color"], **PRINTED)
+            open_markers(axes, nanometres(rest["a_eff"]), line, look)
 
 
 def _cells(table):

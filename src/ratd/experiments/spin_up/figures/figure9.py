@@ -12,7 +12,7 @@ from ratd.experiments.spin_up.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.figures.style import type_style
 from ratd.pictures.snapshots import drive_of, drive_text
-from ratd.pictures.style import TWO_COLUMNS, new_figure, styled
+from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, styled
 from ratd.pipeline import io
 
 AXIS = {
@@ -24,6 +24,8 @@ MARK_TEXT = {"omega_disr": r"$\omega_\mathrm{disr}$", "omega_mass_75": "25 % of 
 MARK_FACE = {"omega_disr": None, "omega_mass_75": "white"}
 """Filled and open markers."""
 STATED = {"color": "black", "marker": "x", "ms": 5.0}
+BASE = {"color": GREY, "marker": "o", "ms": 4.0, "mfc": "white", "ls": "none"}
+"""The paper's value, with which the ratio is 1."""
 LEAST = (0.92, 1.16)
 """The axis reaches at least from the one to the other, so that drives can be compared."""
 
@@ -41,7 +43,8 @@ def figure9(table):
     -------
     matplotlib.figure.Figure
         A panel for each of the two parameters, with one axis: the ratio of a mark to that of the same grain with the
-        material as it is (the paper's value), median over all sizes and its standard error.
+        material as it is (the paper's value), median over all sizes and its standard error. At the paper's value, where
+        all ratios are 1 by definition, one grey marker.
 
     Raises
     ------
@@ -94,12 +97,18 @@ def _against_value(axes, table, parameter, style):
     for kind, look in style.items():
         for mark in MARKS:
             found = effect(table[table["type"] == kind], parameter, mark)
+            found = found[~np.isclose(found["value"] / unit, own)]
             x, shift = found["value"].to_numpy() / unit, next(place, 0.0)
             x = x * 1.12**shift if logarithm else x + 0.3 * shift
             median, error = found["median"].to_numpy(), np.nan_to_num(found["error"].to_numpy())
             form = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5, "ms": 4.0, "mfc": MARK_FACE[mark]}
             axes.errorbar(x, median, error, **look | form)
             ends += [*(median - error), *(median + error)]
+    axes.plot(own, 1.0, **BASE)
+    # beside the edge of the panel the words stand inside
+    side, away = ("left", -4) if own <= values[0] else ("right", 4) if own >= values[-1] else ("center", 0)
+    below = {"textcoords": "offset points", "xytext": (away, -5), "ha": side, "va": "top", "color": GREY}
+    axes.annotate("1 by definition", (own, 1.0), **below)
     if parameter == "T_vis":
         time, ratio = VISCOUS_EFFECT
         axes.plot(time / PS, ratio, ls="none", **STATED)

@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.patches import Patch
 
 from ratd.base.errors import InputError
+from ratd.base.measured import Measured
 from ratd.base.words import plural
 from ratd.experiments.spin_up.fragmentation import SIZE_CLASSES, STAGES, size_class
 from ratd.experiments.spin_up.figures.style import type_style
@@ -39,8 +40,9 @@ def fragments(table, drive=None, stage="half"):
     -------
     matplotlib.figure.Figure
         Above, the mean number in a grain of fragments that have a part of its mass or more, beside the slope of a^-3.5,
-        m^(-5/6). Below, shares of the mass that leaves as monomers, as small fragments and as others. All columns have
-        the same axes; all cells (material, type, size) of a class count alike.
+        m^(-5/6). Below, shares of the mass that leaves as monomers, as small fragments and as others, and the greatest
+        of their standard errors. All columns have the same axes; all cells (material, type, size) of a class count
+        alike.
 
     Raises
     ------
@@ -70,8 +72,9 @@ def fragments(table, drive=None, stage="half"):
             line = {"color": look["color"], "ls": LINES.get(kind, "-"), "lw": 1.2}
             top.plot(number["mass_fraction"], number["number"], drawstyle="steps-pre", label=kind, **line)
         top.set_xlabel("mass of a fragment $m/M$")
-        _bars(bottom, here, style)
-        bottom.set_xlabel("share of the lost mass [%]")
+        most = _bars(bottom, here, style)
+        errors = f",\nstandard errors up to {100 * most:.2g}" if most > 0 else ""
+        bottom.set_xlabel(f"share of the lost mass [%]{errors}")
     top, bottom = panels[:, 0]
     for axis in (top.xaxis, top.yaxis):
         logarithmic(axis)
@@ -115,23 +118,31 @@ def shares(table):
 
     Returns
     -------
-    dict of str to float
+    dict of str to ratd.base.measured.Measured
+        With the standard error of a ratio of sums over grains, NaN for one grain.
     """
     greatest = [most for most, _ in SHARES.values()]
     which = np.searchsorted(greatest, table["fragment_n_monomers"])
-    mass = np.bincount(which, table["weight"] * table["mass_fraction"], minlength=len(SHARES))
-    return dict(zip(SHARES, (mass / mass.sum()).tolist(), strict=True))
+    grain = pd.factorize(table["grain"])[0]
+    mass = np.zeros((grain.max() + 1, len(SHARES)))
+    np.add.at(mass, (grain, which), table["weight"] * table["mass_fraction"])
+    found = mass.sum(axis=0) / mass.sum()
+    off = mass - found * mass.sum(axis=1, keepdims=True)  # of each grain, in the mass of a class
+    n = len(mass)
+    error = np.sqrt((off**2).sum(axis=0) * n / (n - 1)) / mass.sum() if n > 1 else np.full(len(found), np.nan)
+    return {name: Measured(*each) for name, *each in zip(SHARES, found.tolist(), error.tolist(), strict=True)}
 
 
 def _bars(axes, table, style):
-    """Bars of the shares, one a type; those of 10 % and more tell their number."""
+    """Bars of the shares, one a type; those of 10 % and more tell their number. Returns the greatest error."""
+    most = 0.0
     for row, kind in enumerate(style):
         here = table[table["type"] == kind]
         if not len(here):
             continue
         left = 0.0
-        for name, share in shares(here).items():
-            colour = SHARES[name][1]
+        for name, (share, error) in shares(here).items():
+            colour, most = SHARES[name][1], np.fmax(most, error)
             axes.barh(-row, 100 * share, left=left, height=0.7, color=colour)
             if share >= 0.1:
                 ink = "white" if colour == "#000000" else "black"
@@ -139,6 +150,7 @@ def _bars(axes, table, style):
             left += 100 * share
     axes.set(xlim=(0, 100), xticks=(0, 25, 50, 75, 100))
     axes.tick_params(axis="y", length=0)
+    return most
 
 
 def _slope(axes):
@@ -148,5 +160,5 @@ def _slope(axes):
     x = np.array([low, high])
     axes.plot(x, 2.0 * (x / 0.1) ** slope, color=GREY, lw=0.9, zorder=0, scalex=False, scaley=False)
     top = axes.get_ylim()[1]
-    place = {"textcoords": "offset points", "xytext": (6, -2), "ha": "left", "va": "top", "color": GREY}
+    place = {"textcoords": "offset points", "xytext": (12, -2), "ha": "left", "va": "top", "color": GREY}
     axes.annotate(rf"$a^{{-{EXPONENT:g}}}$", (0.1 * (0.45 * top) ** (1.0 / slope), 0.9 * top), **place)

@@ -8,7 +8,14 @@ from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
-from ratd.experiments.spin_up.figures.style import middle_and_most, offsets, size_limits, sizes_label, type_style
+from ratd.experiments.spin_up.figures.style import (
+    middle_and_most,
+    offsets,
+    open_markers,
+    size_limits,
+    sizes_label,
+    type_style,
+)
 from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import TWO_COLUMNS, label_ends, logarithmic, nanometres, new_figure, styled
 
@@ -41,7 +48,7 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
     matplotlib.figure.Figure
         Medians over the grains of a size and type as markers, the middle two thirds as bars, the types side by side. 1
         is the paper: Eq. 33 with A, alpha and <a_mon> as printed, for the contacts and the filling factor of the grain.
-        Dashed, in each panel, the median of the bound for the grains of `firm`.
+        Dashed with the type's open marker, in each panel, the median of the bound for the grains of `firm`.
 
     Raises
     ------
@@ -106,3 +113,4 @@ def _bounds(axes, firm, grains, style, shifts, materials):
         median = known[known["type"] == kind].groupby("size")["ratio"].median()
         sizes = median.index / 1000 + nanometres(shifts[kind])
         axes.plot(sizes, median, color=look["color"], zorder=1, **BOUND)
+        open_markers(axes, sizes, median, look)

@@ -11,7 +11,7 @@ from ratd.pictures.style import GREY, TWO_COLUMNS, bar_lengths, empty, logarithm
 PANELS = {"box": "squeezed, pulled in the box", "ends": "as grown, pulled by the ends", "spin": "as grown, turned"}
 """Panel -> its title."""
 _STATED = rf"${TENSILE_FACTOR:g}\,\phi^{{1.8}}$"
-_SUMMARY = {"marker": "o", "ms": 5, "mfc": "white", "mew": 1.2, "capsize": 2.5, "elinewidth": 1.2, "ls": "none"}
+_SUMMARY = {"ms": 5.5, "mfc": "white", "mew": 1.2, "capsize": 2.5, "elinewidth": 1.2, "ls": "none"}
 
 
 @styled
@@ -28,8 +28,9 @@ def pulled(table, spun):
     Returns
     -------
     matplotlib.figure.Figure
-        Points are grains; crosses with bars are geometric means of the types over all, and the middle two thirds. For
-        turned grains S is the tension at the loss of a quarter of the mass. The line is that of Tatsuuma et al. (2019).
+        Points are grains; open markers with bars are geometric means of a type over all its grains, and the middle two
+        thirds of these. For turned grains S is the tension at the loss of a quarter of the mass. The line is that of
+        Tatsuuma et al. (2019).
     """
     own = beside_spin(usual(table), spun)
     figure = new_figure(TWO_COLUMNS, 0.42 * TWO_COLUMNS, f"tensile strength, {_grains(own)} grains")
@@ -47,11 +48,11 @@ def pulled(table, spun):
             style = type_style([word])[word]
             here = kind == word
             axes.plot(phi[here], strength[here], ls="none", ms=2.5, alpha=0.6, mew=0.0, label=word, **style)
-            _summary(axes, phi[here], strength[here], style["color"])
-    panels[0].set_ylabel(r"$S\,\langle a\rangle/\gamma$")
+            _summary(axes, phi[here], strength[here], style)
+    panels[0].set_ylabel(r"tensile strength $S\,\langle a\rangle/\gamma$")
     logarithmic(panels[0].xaxis)
     logarithmic(panels[0].yaxis)
-    panels[0].errorbar([], [], [], label="mean, middle two thirds", color="black", **_SUMMARY)
+    panels[0].errorbar([], [], [], label="mean, middle two thirds", color="black", marker="D", **_SUMMARY)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5)
     return figure
@@ -74,10 +75,10 @@ def _points(own, name):
     return phi.to_numpy()[there], strength[there], part["type"].to_numpy()[there]
 
 
-def _summary(axes, phi, strength, colour):
-    """Geometric mean of a type at its mean phi, and the middle two thirds of its grains."""
+def _summary(axes, phi, strength, style):
+    """Geometric mean of a type at its mean phi as its marker, open, and the middle two thirds of its grains."""
     ratio = strength / phi**1.8
     x = np.exp(np.log(phi).mean())
     middle, low, high = (value * x**1.8 for value in (np.exp(np.log(ratio).mean()), *np.quantile(ratio, [0.16, 0.84])))
     bars = bar_lengths([middle], [low], [high])
-    axes.errorbar(x, middle, bars, color=colour, zorder=5, **_SUMMARY)
+    axes.errorbar(x, middle, bars, zorder=5, **style, **_SUMMARY)

@@ -51,6 +51,25 @@ def offsets(a_eff, n):
     return 0.14 * size_step(a_eff) * (np.arange(n) - (n - 1) / 2)
 
 
+def open_markers(axes, x, y, look):
+    """A few open markers on a line, which tell its type where colours cannot be seen.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        With a logarithmic axis of y.
+    x, y : array_like, shape (n,)
+        Points of the line.
+    look : dict
+        Colour and marker of the type.
+    """
+    # half way between points, where no other marker stands
+    x, y = np.asarray(x, dtype=float), np.log(np.asarray(y, dtype=float))
+    x, y = 0.5 * (x[1:] + x[:-1]), np.exp(0.5 * (y[1:] + y[:-1]))
+    some = slice(min(1, max(len(x) - 1, 0)), None, 3)
+    axes.plot(x[some], y[some], ls="none", ms=4.0, mfc="white", mew=0.8, zorder=1, **look)
+
+
 def size_step(a_eff):
     """Smallest step between the sizes of a figure [m], half of a lone size."""
     sizes = np.unique(np.rint(np.asarray(a_eff, dtype=float) / 1e-12)) * 1e-12
