@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import enclosing_radius
@@ -129,3 +130,16 @@ def test_a_eff_must_agree_with_the_radii():
     for wrong in (a_eff * 1.001, math.nan):
         with pytest.raises(InputError, match="a_eff"):
             Grain(position, radius, "q-S", a_eff=wrong)
+
+
+def test_a_grain_with_other_positions_or_of_another_material():
+    grain = grow("BA", 60e-9, "q-S", 3)
+    other = grain.replace(material="a-C")
+    assert other.material.name == "a-C" and (other.position == grain.position).all()
+    turned = grain.replace(position=grain.position @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]))
+    for one in (other, turned):
+        assert (one.type, one.seed, one.a_eff, one.n_contacts) == ("BA", 3, grain.a_eff, grain.n_contacts)
+        assert (one.radius == grain.radius).all()
+    assert (turned.position[:, 1] == grain.position[:, 0]).all() and turned.material == grain.material
+    with pytest.raises(InputError, match="pieces"):
+        grain.replace(position=2 * grain.position)

@@ -123,6 +123,24 @@ class Grain:
                 "the cube root of the sum of the cubed radii."
             )
 
+    def replace(self, *, position=None, material=None):
+        """The same aggregate with its spheres elsewhere, or of another material.
+
+        Parameters
+        ----------
+        position : (n, 3) array_like, optional
+            Centres [m].
+        material : Material or str, optional
+
+        Returns
+        -------
+        Grain
+            Radii, type and seed are those of this one, which does not grow anew.
+        """
+        position = self.position if position is None else position
+        material = self.material if material is None else material
+        return Grain(position, self.radius, material, type=self.type, a_eff=self.a_eff, seed=self.seed)
+
     @property
     def n_monomers(self):
         """Number of monomers."""
@@ -306,7 +324,7 @@ def _seated_along_tree(grain):
         pair = grain.radius[sphere], grain.radius[other]
         wanted = sum(pair) - _compression(*pair, grain.material)
         moved[sphere] = moved[other] + (length - wanted) / length * way
-    return _with_positions(grain, grain.position + moved)
+    return grain.replace(position=grain.position + moved)
 
 
 def _nearer(grain, by):
@@ -320,10 +338,4 @@ def _nearer(grain, by):
 
 def _smaller(grain, part):
     """The aggregate with all positions nearer to each other by a part."""
-    return _with_positions(grain, (1.0 - part) * grain.position)
-
-
-def _with_positions(grain, position):
-    """The aggregate with its spheres elsewhere."""
-    about = {"type": grain.type, "a_eff": grain.a_eff, "seed": grain.seed}
-    return Grain(position, grain.radius, grain.material, **about)
+    return grain.replace(position=(1.0 - part) * grain.position)

@@ -212,6 +212,11 @@ def monomer_rows(state):
     return state.monomer.reshape(-1, ROW)[: state.counter[MONOMERS]]
 
 
+def positions_as_given(state):
+    """Centres [m], unwrapped, in the order in which the monomers were given, (n, 3); for a state that has lost none."""
+    return monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
+
+
 def contact_blocks(state):
     """All fields of all contacts, idle ones too, (blocks, fields, LANES), a view; field f stands at f // LANES."""
     return state.contact.reshape(len(state.pair_i) // LANES, -1, LANES)

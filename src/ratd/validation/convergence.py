@@ -154,14 +154,7 @@ def spin_one(grain, case, max_steps=None):
     own = grain.material
     xi_c = own.critical_rolling_displacement if case["xi_c"] is None else case["xi_c"]
     viscous_time = own.viscous_time if case["viscous_time"] is None else case["viscous_time"]
-    changed = type(grain)(
-        grain.position,
-        grain.radius,
-        replace(own, critical_rolling_displacement=xi_c, viscous_time=viscous_time),
-        type=grain.type,
-        a_eff=grain.a_eff,
-        seed=grain.seed,
-    )
+    changed = grain.replace(material=replace(own, critical_rolling_displacement=xi_c, viscous_time=viscous_time))
     row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
     row |= dict(
         study=case["study"],

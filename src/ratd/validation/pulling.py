@@ -20,7 +20,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ratd.aggregates.grain import Grain
 from ratd.base.units import NM
 from ratd.engine.contacts import get_image
 from ratd.engine.layout import CONTACTS
@@ -199,8 +198,7 @@ def in_the_box(grain, variants=BOX):
 def lengthwise(grain):
     """The same grain, turned so that its longest axis lies along x."""
     _, axes = principal_axes(grain.position, grain.mass, grain.radius)
-    position = grain.position @ axes[[2, 0, 1]].T
-    return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+    return grain.replace(position=grain.position @ axes[[2, 0, 1]].T)
 
 
 def became(grain, squeezed):

@@ -8,7 +8,6 @@ a start moved by 1e-12 m shows.
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow
 from ratd.base.statistics import median_of
 from ratd.engine.leapfrog import leapfrog
@@ -79,9 +78,7 @@ def _arguments(vary, value):
 def _spin(grain, vary, value):
     if vary == "moved":
         shift = np.random.default_rng(value).normal(scale=MOVED, size=grain.position.shape)
-        grain = Grain(
-            grain.position + shift, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed
-        )
+        grain = grain.replace(position=grain.position + shift)
     row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
     number = WORDS[vary].index(value) if vary in WORDS else float(value)
     row |= {"vary": vary, "value": number, **grain_values(grain)}

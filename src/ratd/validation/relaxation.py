@@ -12,8 +12,7 @@ import numpy as np
 from ratd.aggregates.growth import grow
 from ratd.base.materials import get_material
 from ratd.engine.fragments import contact_pairs
-from ratd.engine.layout import X
-from ratd.engine.state import monomer_rows
+from ratd.engine.state import positions_as_given
 from ratd.experiments.relax import relax
 from ratd.geometry.neighbours import connected_components
 from ratd.geometry.shape import centre_of_mass, principal_axes
@@ -55,12 +54,9 @@ def rest(grain, timestep_factor):
     state = relax(grain, timestep_factor=timestep_factor)
     pairs = state.identity[contact_pairs(state)]
     before, after = ({tuple(sorted(pair)) for pair in each.tolist()} for each in (grain.contacts, pairs))
-    position = monomer_rows(state)[np.argsort(state.identity), X : X + 3]
-    distance = [
-        np.linalg.norm(each - centre_of_mass(each, grain.mass), axis=1)
-        for each in (grain.position, np.ascontiguousarray(position))
-    ]
-    moments = [principal_axes(each, grain.mass, grain.radius)[0].max() for each in (grain.position, position)]
+    positions = grain.position, positions_as_given(state)
+    distance = [np.linalg.norm(each - centre_of_mass(each, grain.mass), axis=1) for each in positions]
+    moments = [principal_axes(each, grain.mass, grain.radius)[0].max() for each in positions]
     return dict(
         rested=1,
         n_contacts=len(before),

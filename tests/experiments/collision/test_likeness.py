@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.aggregates.mrn import moment_of_length
 from ratd.experiments.collision.likeness import likeness, likeness_table, of_equal_spheres
 
 RADII = np.array([0.3e-6, 0.4e-6, 0.5e-6])
@@ -69,7 +68,6 @@ def test_table():
     found = likeness_table(pd.concat(parts, ignore_index=True), samples=20)
     assert found["quantity"].tolist() == ["X", "N_s", "energy_half"] and (found["cluster"] == "mrn").all()
     np.testing.assert_allclose(found["radius"], 0.42e-6, rtol=0.05)
-    assert found["q"].iloc[0] == pytest.approx(moment_of_length(found["radius"].iloc[0]))
 
 
 def test_without_unequal_spheres_the_table_has_no_rows_and_its_types():

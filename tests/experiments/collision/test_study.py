@@ -188,7 +188,7 @@ def test_the_queue_keeps_snapshots_of_what_is_shown_alone(done, tmp_path):
     write_particles(again, tmp_path / "a.xyz")
     frames = read_particles(tmp_path / "a.xyz", frame=2)
     np.testing.assert_allclose(frames.position, positions(shown)[1][2], atol=1e-15)
-    with pytest.raises(InputError, match="without piece; .* read_runs gives of a file of ratd has its N_s"):
+    with pytest.raises(InputError, match="without piece; .*read_runs gives of a file of ratd has its N_s"):
         fragmentation(again)
     # each of the two came as one piece, the giant first of its own
     origin = origin_of(positions(shown)[2])

@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+from ratd.experiments.collision.plan import FIGURES as OF_A_CONFIG
+from ratd.experiments.collision.plan import SPACING
+
 __all__ = [
     "DATA",
     "FIGURES",
@@ -21,19 +24,18 @@ PAGE = "docs/collision/collision.html"
 """The collision of figure 4, to be turned and stepped through in a browser."""
 _SHOWN = {"law": "velocity", "mrn": "mrn", "twin": "314nm", "cut": "mrn100"}
 """`cut` is MRN without its smallest spheres."""
+_SETTINGS = {
+    "figure1": {},
+    "figure2": {},
+    "figure3": {"rotation": 1, "spacing": SPACING["figure3"]},
+    "figure4": {"rotation": 2, "spacing": SPACING["figure4"]},
+    "scaling": {},
+    "question": {"velocities": [15.0, 30.0]},
+}
+"""Figure -> its settings where they are not `_SHOWN`."""
 FIGURES = {
-    "figure1": ("figure1", "built", {}),
-    "figure2": ("figure2", "built", {}),
-    "figure3": ("snapshots", "picture", {"rotation": 1, "spacing": 1.0e-7}),
-    "figure4": ("snapshots", "picture", {"rotation": 2, "spacing": 1.5e-7}),
-    "figure5": ("figure5", "table", _SHOWN),
-    "figure6": ("figure6", "table", _SHOWN),
-    "figure7": ("figure7", "runs", _SHOWN),
-    "figure8": ("figure8", "table", _SHOWN),
-    "dissipation": ("dissipation", "table", _SHOWN),
-    "masses": ("masses", "runs", _SHOWN),
-    "scaling": ("scaling", "thresholds", {}),
-    "question": ("question", "table", {"velocities": [15.0, 30.0]}),
+    name: (*how, _SETTINGS.get(name, _SHOWN))
+    for name, how in (OF_A_CONFIG | {"question": ("question", "table")}).items()
 }
 """Figure -> module that draws it, what it is drawn from, and its settings."""
 
@@ -58,7 +60,7 @@ def figure_input(name):
     source = FIGURES[name][1]
     if source == "built":
         return {"built": [SAMPLES]}
-    if source == "picture":
+    if source == "pictures":
         return {"runs": [f"{DATA}/pictures/{name}.nc"]}
     if source == "runs":
         return {"runs": run_files()}

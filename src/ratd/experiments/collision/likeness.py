@@ -8,7 +8,6 @@ velocities that both have.
 import numpy as np
 import pandas as pd
 
-from ratd.aggregates.mrn import moment_of_length
 from ratd.experiments.collision.fragmentation import bootstrap_means, means
 from ratd.pipeline.kinds import Kind, entries, register
 
@@ -24,9 +23,6 @@ COLUMNS = {
     "radius": ("m", "radius of the equal spheres that it is most like"),
     "radius_low": ("m", "16 % of the bootstrap"),
     "radius_high": ("m", "84 % of the bootstrap"),
-    "q": ("1", "moment of the MRN law from 50 nm to 2.5 um whose length that is"),
-    "q_low": ("1", "that of `radius_low`"),
-    "q_high": ("1", "that of `radius_high`"),
     "misfit": ("1", "root mean square difference that is left"),
     "at_end": ("1", "1 where the best radius is the least or the greatest that there is"),
 }
@@ -48,7 +44,7 @@ def of_equal_spheres(table):
     return equal[equal["second_contact"].isin(equal["second_contact"].mode()[:1])]
 
 
-def likeness(cluster, equal, quantity, samples=500, seed=0):
+def likeness(cluster, equal, quantity, samples=500):
     """Radius of the equal spheres that a cluster is most like.
 
     Parameters
@@ -59,7 +55,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
         Radius [m] -> collisions of equal spheres; two radii at least.
     quantity : str
         A column.
-    samples, seed : int
+    samples : int
         Of the bootstrap, see `ratd.experiments.collision.fragmentation.bootstrap_means`.
 
     Returns
@@ -86,7 +82,7 @@ def likeness(cluster, equal, quantity, samples=500, seed=0):
         return grid[k], misfit[k]
 
     radius, misfit = best([means(table[table["velocity"].isin(common)], quantity)[1] for table in tables])
-    rng = np.random.Generator(np.random.PCG64(seed))
+    rng = np.random.Generator(np.random.PCG64(0))
     drawn = np.stack([bootstrap_means(table, quantity, common, samples, rng) for table in tables])
     # a draw of samples that lack a velocity says nothing
     whole = np.flatnonzero(np.isfinite(drawn).all(axis=(0, 1)))
@@ -125,11 +121,6 @@ def likeness_table(table, samples=500):
             own, wanted = _with_common_velocities(own, equal)
             for quantity in QUANTITIES:
                 row = likeness(own, wanted, quantity, samples)
-                row |= {"law": law, "cluster": cluster, "quantity": quantity}
-                row |= {
-                    q: moment_of_length(row[r])
-                    for q, r in (("q", "radius"), ("q_low", "radius_low"), ("q_high", "radius_high"))
-                }
-                found.append(row)
+                found.append(row | {"law": law, "cluster": cluster, "quantity": quantity})
     types = {name: float if units else object for name, (units, _) in COLUMNS.items()}
     return pd.DataFrame(found, columns=list(COLUMNS)).astype(types)

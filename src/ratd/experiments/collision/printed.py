@@ -7,5 +7,3 @@ PRINTED_RADII = {"N_s": (0.314e-6, 4.6), "X": (0.353e-6, 5.0), "energy_half": (0
 is said to be like that of 0.298 to 0.314 um, q = 4.5 to 4.6."""
 RADII = (0.298e-6, 0.314e-6, 0.353e-6, 0.396e-6, 0.453e-6, 0.57e-6)
 """Radii of the equal spheres [m]."""
-CONTACTS = 1.5
-"""Contacts over spheres of a cluster (Sect. 2.3)."""

@@ -11,8 +11,7 @@ from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.laws import balance_of, contacts_of, longest_step, step_of
 from ratd.experiments.evolve import columns, evolve
 from ratd.experiments.relax import relax
-from ratd.engine.layout import X
-from ratd.engine.state import monomer_rows
+from ratd.engine.state import positions_as_given
 from ratd.laws.chosen import law_of
 from ratd.laws.dmt_with_friction import dmt
 
@@ -57,8 +56,7 @@ def at_rest(grain, law="dmt"):
         If it comes apart meanwhile.
     """
     state = relax(grain, law=law_of(law, dmt), timestep_factor=RELAXATION_STEP)
-    position = monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
-    return Grain(position, grain.radius, grain.material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+    return grain.replace(position=positions_as_given(state))
 
 
 def too_short(velocity, duration, gap=GAP):

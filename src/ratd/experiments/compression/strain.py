@@ -9,16 +9,16 @@ import xarray as xr
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.hand_over import hand_over
-from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME, X
+from ratd.engine.layout import CONTACTS, DT, MASS, MONOMERS, RADIUS, STEPS, TIME
 from ratd.engine.semi_implicit import SemiImplicit
-from ratd.engine.state import FIELD_TYPES, State, monomer_rows
+from ratd.engine.state import FIELD_TYPES, State, monomer_rows, positions_as_given
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
 from ratd.experiments.unfinished import attached
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
 
-__all__ = ["Parts", "positions", "state_of", "strain", "strain_dataset"]
+__all__ = ["Parts", "state_of", "strain", "strain_dataset"]
 
 # name -> dimension after `record`, units, meaning
 RECORDS = {
@@ -112,7 +112,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     loaded = checkpoints.load(checkpoint, key)
     if loaded is None:
         rows = [_row(state, parts, None)]
-        kept = [positions(state)] if 0 in snapshots else []
+        kept = [positions_as_given(state)] if 0 in snapshots else []
     else:
         state, tables = loaded
         rows, kept = list(tables["rows"]), list(tables["kept"])
@@ -138,7 +138,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
             no_step = state.scalar[TIME] == rows[-1][0]
             rows.append(rows[-1].copy() if no_step else _row(state, parts, rows))
             if number in snapshots:
-                kept.append(positions(state))
+                kept.append(positions_as_given(state))
             if check is not None:
                 # the first record has the energy at the start in place of a residual
                 before = as_dict(rows[change]) if number > change else as_dict(rows[0]) | {"energy_residual": 0.0}
@@ -149,11 +149,6 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
                 now = rows[-1][0]
                 tell(as_dict(rows[-1]), pace.to_go(marks[-1] - now, now))
     return reached(state)
-
-
-def positions(state):
-    """Centres [m], unwrapped, in the order of the input, (n, 3)."""
-    return monomer_rows(state)[np.argsort(state.identity), X : X + 3].copy()
 
 
 def as_dict(row):
@@ -206,7 +201,7 @@ def strain_dataset(state, rows, parts):
         dims = ("record", dimension) if dimension else ("record",)
         variables[name] = (dims, values.copy(), {"units": units, "long_name": meaning})
     about = {"units": "m", "long_name": "centres at the end, not wrapped into the box"}
-    variables["position"] = (("monomer", "axis"), positions(state), about)
+    variables["position"] = (("monomer", "axis"), positions_as_given(state), about)
     radius = monomer_rows(state)[np.argsort(state.identity), RADIUS]
     variables["radius"] = ("monomer", radius.copy(), {"units": "m", "long_name": "radii"})
     for name, array in state._asdict().items():

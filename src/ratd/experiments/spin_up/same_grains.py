@@ -7,7 +7,6 @@ file of its own, like one of the ensemble, and all files of a job are made toget
 from dataclasses import replace
 from pathlib import Path
 
-from ratd.aggregates.grain import Grain
 from ratd.base.materials import Material
 from ratd.engine.layout import DT
 from ratd.engine.leapfrog import leapfrog
@@ -38,8 +37,7 @@ def of_material(grain, **changed):
     ratd.Grain
         Monomers, type and seed are those of the grain, which does not grow anew.
     """
-    material = replace(grain.material, **changed)
-    return Grain(grain.position, grain.radius, material, type=grain.type, a_eff=grain.a_eff, seed=grain.seed)
+    return grain.replace(material=replace(grain.material, **changed))
 
 
 def way_material(way):
