@@ -19,7 +19,7 @@ PREDICTORS = {
 """What is compared out of sample, and what each of them fits."""
 
 
-def cross_validation(table, mark="omega_disr", seed=0, materials=None):
+def cross_validation(table, mark="omega_disr"):
     """How well Eq. 33, the cut bound and a power of size predict omega of grains of a size they were not fitted to.
 
     One size after the other is left out, so that a prediction goes beyond the sizes of the fit.
@@ -30,10 +30,6 @@ def cross_validation(table, mark="omega_disr", seed=0, materials=None):
         One row a grain, of one drive.
     mark : str
         What is predicted [rad s-1].
-    seed : int
-        Of the bootstrap.
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
 
     Returns
     -------
@@ -44,8 +40,8 @@ def cross_validation(table, mark="omega_disr", seed=0, materials=None):
     """
     needed = [mark, "cut_bound", "n_monomers", "n_contacts", "filling_factor", "a_eff"]
     table = table[(table[needed].astype(float) > 0).all(axis=1)]
-    grains = _Grains(table, mark, materials)
-    rng = np.random.Generator(np.random.PCG64(seed))
+    grains = _Grains(table, mark)
+    rng = np.random.Generator(np.random.PCG64(0))
     residual = np.full((len(table), len(PREDICTORS)), np.nan)
     for size in np.unique(grains.size):
         out = grains.size == size
@@ -66,7 +62,7 @@ def cross_validation(table, mark="omega_disr", seed=0, materials=None):
 class _Grains:
     """What is predicted of the grains of a table, and what from, as arrays, of which a part is quickly taken."""
 
-    def __init__(self, table, mark, materials):
+    def __init__(self, table, mark):
         self.omega, self.a_eff, self.cut_bound = table[[mark, "a_eff", "cut_bound"]].to_numpy(float).T
         self.contacts, self.monomers, self.filling = (
             table[["n_contacts", "n_monomers", "filling_factor"]].to_numpy(float).T
@@ -74,7 +70,7 @@ class _Grains:
         self.type = table["type"].to_numpy()
         self.series = pd.MultiIndex.from_frame(table[["material", "type"]]).factorize()[0]
         self.size, self.cell = size_key(table["a_eff"]).to_numpy(), cell_of(table)
-        self.unit = size_law_unit(table, materials)
+        self.unit = size_law_unit(table)
 
 
 def _by_contacts(grains, train):

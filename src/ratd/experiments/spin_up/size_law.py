@@ -20,13 +20,13 @@ def unit_of(material):
     return math.sqrt(material.surface_energy / (material.density * SPLIT**3))
 
 
-def size_law_unit(table, materials=None):
+def size_law_unit(table):
     """`unit_of` the material of each grain of a table [rad s-1]."""
-    unit = {name: unit_of(get_material(name, materials)) for name in table["material"].unique()}
+    unit = {name: unit_of(get_material(name)) for name in table["material"].unique()}
     return table["material"].map(unit).to_numpy(float)
 
 
-def size_law(table, mark="omega_disr", materials=None, seed=0):
+def size_law(table, mark="omega_disr"):
     """omega of each type as a power of size, for whoever has no grain at hand.
 
     omega = C sqrt(gamma/(rho a^3)) (a_eff/a)^-p with a = `SPLIT`, by least squares of ln omega; all cells count alike.
@@ -39,10 +39,6 @@ def size_law(table, mark="omega_disr", materials=None, seed=0):
         One row a grain, of one drive.
     mark : str
         omega [rad s-1].
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
-    seed : int
-        Of the bootstrap over grains.
 
     Returns
     -------
@@ -50,10 +46,10 @@ def size_law(table, mark="omega_disr", materials=None, seed=0):
         A row a type of at least two sizes: C, p with `_error`; scatter, the root mean square of the residuals of
         ln omega; n_grains.
     """
-    return _laws(table, mark, materials, seed, "Cp", weighted_line)
+    return _laws(table, mark, "Cp", weighted_line)
 
 
-def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
+def curved_law(table, mark="omega_mass_75"):
     """omega of each type as a curve over size, for whoever has no grain at hand.
 
     omega = C sqrt(gamma/(rho a^3)) (a_eff/a)^(-p - q ln(a_eff/a)) with a = `SPLIT`, by least squares of ln omega; all
@@ -66,10 +62,6 @@ def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
         One row a grain, of one drive.
     mark : str
         omega [rad s-1].
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
-    seed : int
-        Of the bootstrap over grains.
 
     Returns
     -------
@@ -77,19 +69,19 @@ def curved_law(table, mark="omega_mass_75", materials=None, seed=0):
         A row a type of at least three sizes: C, p, q with `_error`; scatter, the root mean square of the residuals of
         ln omega; n_grains.
     """
-    return _laws(table, mark, materials, seed, "Cpq", weighted_parabola)
+    return _laws(table, mark, "Cpq", weighted_parabola)
 
 
-def _laws(table, mark, materials, seed, names, fit):
+def _laws(table, mark, names, fit):
     """`size_law` and `curved_law`: a row a type, `fit` being what finds as many numbers as there are names."""
     table = table[table[mark].astype(float) > 0]
-    rng = np.random.Generator(np.random.PCG64(seed))
+    rng = np.random.Generator(np.random.PCG64(0))
     rows = []
     for kind, part in table.groupby("type", sort=False):
         if size_key(part["a_eff"]).nunique() < len(names):
             continue
         x = np.log(part["a_eff"].to_numpy(float) / SPLIT)
-        y = np.log(part[mark].to_numpy(float) / size_law_unit(part, materials))
+        y = np.log(part[mark].to_numpy(float) / size_law_unit(part))
         weights = equal_weights(cell_of(part))
         powers = fit(x, y, weights)
         drawn = fit(x, y, drawn_counts(rng, N_BOOTSTRAP, len(x)) * weights)

@@ -150,7 +150,6 @@ def surviving(
     porous=False,
     wide=False,
     coefficient=None,
-    materials=None,
     draws=400,
     seed=0,
 ):
@@ -174,8 +173,6 @@ def surviving(
         Whether light finds it as wide as the gas then does (`radiation.omega_rat`); else the torque is that of a_eff.
     coefficient : float, optional
         See `radiation.infrared_damping`; that of each material when not given, `radiation.infrared_of`.
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
     draws, seed : int
         Of the laws that are drawn with the standard errors of the means of `measured_law`.
 
@@ -197,7 +194,7 @@ def surviving(
     rng = np.random.Generator(np.random.PCG64(seed))
     rows = []
     for name in dict.fromkeys(table["material"]):
-        material = get_material(name, materials)
+        material = get_material(name)
         infrared = infrared_of(name) if coefficient is None else coefficient
         for kind in dict.fromkeys(table.loc[table["material"] == name, "type"]):
             ratio = grown_inertia(grown, name, kind) if porous else None

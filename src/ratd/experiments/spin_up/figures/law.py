@@ -13,26 +13,17 @@ from ratd.experiments.spin_up.figures.style import sizes_label, type_style
 from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import ONE_COLUMN, label_ends, logarithmic, nanometres, new_figure, styled
 
-MARK_TEXT = {
-    "omega_first_loss": "of the first loss of mass",
-    "omega_mass_75": "where a quarter of the mass is lost",
-    "omega_disr": "where the stress peaks",
-    "omega_contacts_75": "where a quarter of the contacts is lost",
-}
+MARK, MARK_TEXT = "omega_mass_75", "where a quarter of the mass is lost"
 
 
 @styled
-def law(table, mark="omega_mass_75", materials=None):
+def law(table):
     """omega of each type over size, in the unit of its material, with a curved law, and what a straight one leaves.
 
     Parameters
     ----------
     table : pandas.DataFrame
         One row a grain, of one drive.
-    mark : str
-        Column with omega [rad s-1].
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
 
     Returns
     -------
@@ -46,13 +37,13 @@ def law(table, mark="omega_mass_75", materials=None):
     InputError
         If no type has grains of three sizes.
     """
-    curved, straight = (fit(table, mark, materials) for fit in (curved_law, size_law))
+    curved, straight = (fit(table, MARK) for fit in (curved_law, size_law))
     if not len(curved):
         raise InputError("law: give grains of at least three sizes of a type")
     curved, straight = curved.set_index("type"), straight.set_index("type")
     kinds = [kind for kind in type_style(table["type"]) if kind in curved.index]
-    table = table[table[mark].astype(float) > 0]
-    title = f"{plural(len(table), 'grain')}, {drive_text(drive_of(table))}\n$\\omega$ {MARK_TEXT.get(mark, mark)}"
+    table = table[table[MARK].astype(float) > 0]
+    title = f"{plural(len(table), 'grain')}, {drive_text(drive_of(table))}\n$\\omega$ {MARK_TEXT}"
     figure = new_figure(ONE_COLUMN, (0.95 + 0.2 * len(kinds)) * ONE_COLUMN, title)
     top, *strips = figure.subplots(1 + len(kinds), 1, sharex=True, height_ratios=[4, *[1.1] * len(kinds)])
     size = np.geomspace(table["a_eff"].min(), table["a_eff"].max(), 60)
@@ -60,7 +51,7 @@ def law(table, mark="omega_mass_75", materials=None):
     for strip, (kind, look) in zip(strips, type_style(kinds).items(), strict=True):
         own = curved.loc[kind]
         line = curved_law_value(size, own["C"], own["p"], own["q"])
-        found = means(table[table["type"] == kind], mark, materials)
+        found = means(table[table["type"] == kind])
         power = straight.loc[kind, ["C", "p"]].astype(float)
         parts = (
             (top, np.ones(len(found)), line),
@@ -103,12 +94,12 @@ def _signed(value):
     return f"{round(value, 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
 
 
-def means(table, mark, materials=None):
+def means(table):
     """Mean ln omega, in units of `size_law_unit`, of each size of a table of one type, with its standard error.
 
     Parameters
     ----------
-    table, mark, materials
+    table : pandas.DataFrame
         As of `law`.
 
     Returns
@@ -116,8 +107,8 @@ def means(table, mark, materials=None):
     pandas.DataFrame
         Columns a_eff, mean, error, n, a row a size; the materials count alike (`ratd.base.statistics.mean_of`).
     """
-    table = table[table[mark].astype(float) > 0]
-    table = table.assign(log=np.log(table[mark].astype(float) / size_law_unit(table, materials)))
+    table = table[table[MARK].astype(float) > 0]
+    table = table.assign(log=np.log(table[MARK].astype(float) / size_law_unit(table)))
     rows = []
     for _, part in table.groupby(size_key(table["a_eff"])):
         mean, error = mean_of(part["log"], cell_of(part))

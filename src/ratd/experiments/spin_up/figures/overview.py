@@ -19,13 +19,15 @@ from ratd.experiments.spin_up.figures.style import (
 from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import TWO_COLUMNS, label_ends, logarithmic, nanometres, new_figure, styled
 
+MARK = "omega_mass_75"
+TITLE = "angular velocity at which a quarter of the mass is lost, over that of the paper"
 APART = 1.6
 """Distance of the types at one size over that of the other figures (`offsets`)."""
 BOUND = {"lw": 1.1, "ls": (0, (4, 1.5))}
 
 
 @styled
-def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_75", materials=None):
+def overview(prescribed, literal=None, firm=None, grown=None):
     """omega at which grains break over omega of the paper for the same grain, against size.
 
     Parameters
@@ -38,10 +40,6 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
         Bounds of `firm_bound.FIRM_BOUND_COLUMNS`.
     grown : pandas.DataFrame, optional
         Grains of `firm` with what Eq. 33 needs; default: those of `prescribed`.
-    mark : str
-        Column with omega [rad s-1].
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
 
     Returns
     -------
@@ -56,11 +54,11 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
         If no grain has the mark and a law in Table 3.
     """
     tables = [prescribed] if literal is None else [prescribed, literal]
-    tables = [table.assign(ratio=over_the_paper(table, mark, materials)) for table in tables]
+    tables = [table.assign(ratio=over_the_paper(table, MARK)) for table in tables]
     if not any(table["ratio"].notna().any() for table in tables):
-        raise InputError(f"overview: give at least one grain of Table 3 of the paper with {mark}")
+        raise InputError(f"overview: give at least one grain of Table 3 of the paper with {MARK}")
     style = type_style([kind for table in tables for kind in table["type"]])
-    figure = new_figure(TWO_COLUMNS, (0.56 if len(tables) == 1 else 0.5) * TWO_COLUMNS, _title(mark))
+    figure = new_figure(TWO_COLUMNS, (0.56 if len(tables) == 1 else 0.5) * TWO_COLUMNS, TITLE)
     panels = figure.subplots(1, len(tables), sharex=True, sharey=True, squeeze=False)[0]
     every = np.concatenate([table["a_eff"] for table in tables])
     shifts = dict(zip(style, APART * offsets(every, len(style)), strict=True))
@@ -77,7 +75,7 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
         axes.set_xlabel(sizes_label())
         axes.set_yscale("log")
         if firm is not None:
-            _bounds(axes, firm, prescribed if grown is None else grown, style, shifts, materials)
+            _bounds(axes, firm, prescribed if grown is None else grown, style, shifts)
     logarithmic(panels[0].yaxis, labelled=(2, 5))
     panels[0].set_xlim(*nanometres(size_limits(every)))
     panels[0].set_ylabel("$\\omega$ over that of the paper\nfor the same grain")
@@ -92,23 +90,17 @@ def overview(prescribed, literal=None, firm=None, grown=None, mark="omega_mass_7
     return figure
 
 
-def over_the_paper(table, column, materials=None):
+def over_the_paper(table, column):
     """A column of omega [rad s-1] over Eq. 33 as printed for each grain, pandas.Series; NaN where one is not known."""
-    return table[column].astype(float) / eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS, materials)
+    return table[column].astype(float) / eq33_omega(table, TABLE_3, PAPER_MEAN_RADIUS)
 
 
-def _title(mark):
-    """What is drawn, in words."""
-    words = {"omega_mass_75": "a quarter of the mass is lost", "omega_disr": "the stress peaks"}
-    return f"angular velocity at which {words.get(mark, mark)}, over that of the paper"
-
-
-def _bounds(axes, firm, grains, style, shifts, materials):
+def _bounds(axes, firm, grains, style, shifts):
     """Median of the bound over Eq. 33 of each type and size, a line a type, where its markers stand."""
     keys = ["material", "type", "size", "seed"]
     bounds, grains = (table.assign(size=size_key(table["a_eff"])) for table in (firm, grains))
     known = grains.merge(bounds[[*keys, "firm_bound"]], on=keys, validate="one_to_one")
-    known = known.assign(ratio=over_the_paper(known, "firm_bound", materials))
+    known = known.assign(ratio=over_the_paper(known, "firm_bound"))
     for kind, look in style.items():
         median = known[known["type"] == kind].groupby("size")["ratio"].median()
         sizes = median.index / 1000 + nanometres(shifts[kind])

@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ratd.experiments.spin_up.radiation import DIFFUSE
 from ratd.experiments.spin_up.surviving import COMPUTED, is_extrapolated, surviving
 from ratd.experiments.spin_up.figures.style import type_style
 from ratd.pictures.style import GREY, ONE_COLUMN, TWO_COLUMNS, empty, logarithmic, nanometres, new_figure, styled
@@ -20,7 +19,7 @@ MARKED, STAGGER = 26, 9
 
 
 @styled
-def radiation(table, grown, mark="omega_mass_75", around=DIFFUSE, materials=None):
+def radiation(table, grown):
     """Largest surviving grain against the strength of the radiation, a panel a material.
 
     Parameters
@@ -29,11 +28,6 @@ def radiation(table, grown, mark="omega_mass_75", around=DIFFUSE, materials=None
         Grains that were spun up, of one drive.
     grown : pandas.DataFrame
         Grains as grown.
-    mark : str
-        omega of disruption of this work.
-    around : ratd.experiments.spin_up.radiation.Surroundings
-    materials : optional
-        Table of materials, handed to `ratd.base.materials.get_material`.
 
     Returns
     -------
@@ -43,10 +37,7 @@ def radiation(table, grown, mark="omega_mass_75", around=DIFFUSE, materials=None
         ones. Dotted where the size is none of those that were spun up, which the grey areas show. A line begins where
         the first size is destroyed.
     """
-    found, stronger = (
-        surviving(table, grown, STRENGTHS, mark, around=around, materials=materials, porous=porous, draws=0)
-        for porous in (False, True)
-    )
+    found, stronger = (surviving(table, grown, STRENGTHS, porous=porous, draws=0) for porous in (False, True))
     # where the stronger drag lets no grain be torn, the bar has no end
     found["with_stronger"] = stronger["a_disr"].fillna(np.inf)
     names = list(dict.fromkeys(found["material"])) or [""]
