@@ -36,7 +36,7 @@ def task(script, function, *writes):
     script : path-like
         The script of the rule, which says how the function is called and what becomes of its result.
     function : str
-        Module and name, such as ``"ratd.experiments.spin_up.marks:disrupt"``.
+        Module and name, such as ``"ratd.experiments.spin_up.disrupt:disrupt"``.
     *writes : str
         Kinds of files that are written; their layout is part of the hash.
 

@@ -49,7 +49,7 @@ def module_files(root=_ROOT):
     Returns
     -------
     dict of str to Path
-        Dotted name, e.g. ``"ratd.laws.jkr"``, -> file; ``"ratd"`` is the package itself, and stands for its
+        Dotted name, e.g. ``"ratd.laws.chosen"``, -> file; ``"ratd"`` is the package itself, and stands for its
         ``__init__.py`` as every package does.
     """
     return {name: Path(path) for name, path in _module_paths(root).items()}
@@ -85,8 +85,8 @@ def imported_modules(source, name=None, root=_ROOT):
     Returns
     -------
     set of str
-        Dotted names. A package counts together with its modules: ``from ratd.laws import jkr`` gives ``ratd.laws``
-        and ``ratd.laws.jkr``.
+        Dotted names. A package counts together with its modules: ``from ratd.laws import chosen`` gives
+        ``ratd.laws`` and ``ratd.laws.chosen``.
 
     Raises
     ------

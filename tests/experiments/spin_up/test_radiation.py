@@ -161,7 +161,7 @@ def power_law(level, power):
     return lambda size: level * (np.asarray(size) / SPLIT) ** -power
 
 
-@pytest.mark.parametrize(("strength", "power"), [(1.0, 2.0), (300.0, 1.5), (2e4, 1.0)])
+@pytest.mark.parametrize(("strength", "power"), [(1.0, 2.0), (300.0, 1.5), (2e4, 1.0), (30.0, 0.0)])
 def test_destroyed_sizes_are_where_both_are_equal(strength, power):
     material = get_material("q-S")
     law = power_law(2.0 * unit_of(material), power)
@@ -170,6 +170,7 @@ def test_destroyed_sizes_are_where_both_are_equal(strength, power):
         if np.isfinite(edge):
             assert omega_rat(edge, strength) == pytest.approx(law(edge), rel=1e-4)
     assert omega_rat(0.98 * smallest, strength) < law(0.98 * smallest)
+    assert np.isinf(greatest) == (power > 0.5)
     assert np.isinf(greatest) or omega_rat(1.02 * greatest, strength) < law(1.02 * greatest)
     inside = np.geomspace(1.01 * smallest, min(0.99 * greatest, SEARCHED[1]))
     assert (omega_rat(inside, strength) > law(inside)).all()

@@ -142,8 +142,8 @@ def collide(
     -------
     xarray.Dataset
         As from `ratd.evolve`; `cluster` says whose each sphere was. Attributes: velocity, impact_parameter, seed, law,
-        timestep, steps, mass_a, mass_b [kg], impact_energy [J], and balance, the greatest residual of the balance of
-        energy over the impact energy.
+        timestep, steps, material, density [kg m-3], mass_a, mass_b [kg], impact_energy [J], and balance, the greatest
+        residual of the balance of energy over the impact energy.
 
     Raises
     ------

@@ -81,7 +81,7 @@ def _record_variables():
 register(
     "compression",
     Kind(
-        "Clusters compressed, or stretched, in a periodic box",
+        "Clusters compressed in a periodic box",
         {
             **MATERIAL,
             "seed": Variable((ROW,), "i8", "1", "seed of the cluster"),

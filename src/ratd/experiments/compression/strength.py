@@ -1,4 +1,4 @@
-"""What compressions say of the compressive strength: ratios to P_0 phi^3, fits, and who dissipates the energy."""
+"""What compressions say of the compressive strength: ratios to P_0 phi^3, fits, and the number of neighbours."""
 
 import warnings
 from typing import NamedTuple
@@ -319,7 +319,7 @@ def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
 
 
 def far_slope_of_structure(table, snapshot):
-    """The same over the `FARTHEST` greatest distances within which half of the monomers of the box are at most."""
+    """`slope_of_structure` over the `FARTHEST` greatest distances within which half of the monomers of the box are."""
     number = table["number_within"].values[:, snapshot]
     there = number[np.isfinite(number).any(axis=1)]
     if not len(there):

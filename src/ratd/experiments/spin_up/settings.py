@@ -43,7 +43,7 @@ class Settings(Cells):
 
     @property
     def radii(self):
-        """Arguments of `ratd.aggregates.growth.RadiusDistribution` [m]."""
+        """Arguments of `ratd.aggregates.radii.RadiusDistribution` [m]."""
         growth = self.config["growth"]
         return {
             "median": growth["median_nm"] * NM,

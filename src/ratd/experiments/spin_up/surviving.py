@@ -41,14 +41,19 @@ def measured_law(table, mark, material, kind, draws=0, rng=None):
     Returns
     -------
     best, drawn : callable
-        Of sizes [m] (n,) -> omega [rad s-1] (n,) and (draws, n); beyond the sizes that were spun up as the power of the
-        `OUTER` next ones.
+        Of sizes [m] (n,) -> omega [rad s-1] (n,) and (draws, n), the best one where nothing is drawn; beyond the sizes
+        that were spun up as the power of the `OUTER` next ones.
+
+    Raises
+    ------
+    InputError
+        If fewer than two sizes of these grains were spun up.
     """
     part = table[(table["material"] == material) & (table["type"] == kind) & (table[mark].astype(float) > 0.0)]
     value = np.log(part[mark].astype(float))
     place, mean = _by_size(part, value)
     if len(mean) < 2:
-        raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up")
+        raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up; give at least two")
     error = value.groupby(size_key(part["a_eff"]).to_numpy()).sem().sort_index().fillna(0.0).to_numpy()
     best = _along_lines(*_extended(place, mean[None]))
     spread = error * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
