@@ -11,8 +11,9 @@ import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import findings, of_sizes
+from ratd.experiments.compression.findings import findings, of_repeats, of_sizes
 from ratd.experiments.compression.pairs import BY_SIZE
+from ratd.experiments.compression.strength import measured, scatter_at
 from ratd.experiments.compression.tables import joined
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
 from ratd.experiments.compression.verdicts import below
@@ -288,3 +289,16 @@ def test_a_slow_squeeze_is_said_to_suggest_what_five_clusters_do_not_show(values
         chosen = {"base": sets["base"], "n_16384": sets["n_16384"], "slow_16384": slow}
         found = findings(chosen, None, None)
         assert found["slow_0.01"] == found["slow_0.02"] == word
+
+
+def test_sets_that_were_made_once_more_agree_in_their_means():
+    """Within three errors, and single clusters by less than two clusters do."""
+    sets, *_, repeats = document.read_data()
+    found = of_repeats(sets, repeats)
+    assert {name.split(".")[0] for name in found} == set(repeats) and len(repeats) >= 2
+    over = [value for name, value in found.items() if ".over_first_" in name]
+    assert len(over) >= 7 and all(abs(one.value - 1.0) < 3.0 * one.error for one in over)
+    assert found["n_1024.parted_0.1"] < 0.5 * float(measured(scatter_at(sets["n_1024"], 0.1)).value)
+    # a set beside itself
+    same = of_repeats(sets, {"base": sets["base"]})
+    assert same["base.parted_0.1"] == 0.0 and same["base.over_first_0.1"].value == pytest.approx(1.0)

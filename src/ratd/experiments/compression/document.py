@@ -120,9 +120,14 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
         See `ratd.experiments.compression.tension_findings.spun_up`.
     lammps, box, dense, springs : pandas.DataFrame or None
         See `ratd.experiments.compression.beside_lammps` and `ratd.experiments.compression.springs`.
+    repeats : dict of str to xarray.Dataset
+        Sets that were made once more.
     """
     data = Path(data)
-    sets = {path.stem: io.read(path, "compression_set") for path in sorted((data / "sets").glob("*.nc"))}
+    sets, repeats = (
+        {path.stem: io.read(path, "compression_set") for path in sorted((data / folder).glob("*.nc"))}
+        for folder in ("sets", "again")
+    )
     if "base" not in sets:
         raise FileError(f"{data / 'sets'}: holds no base.nc, which all sets are compared with")
     tension = data / "tension.nc"
@@ -132,7 +137,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
     for name in ("compression", "box_at_rest", "dense", "spring_back"):
         path = Path(peer, f"{name}.nc")
         beside.append(io.read(path, f"validation_{name}").to_dataframe() if path.is_file() else None)
-    return sets, entries, grains, *beside
+    return sets, entries, grains, *beside, repeats
 
 
 def redraw(folder=".", into=None):
@@ -147,16 +152,16 @@ def redraw(folder=".", into=None):
     """
     folder = Path(folder)
     into = folder if into is None else Path(into)
-    sets, entries, grains, *beside = read_data(folder / DATA, folder / SPUN, folder / PEER)
+    sets, entries, grains, *beside, springs, repeats = read_data(folder / DATA, folder / SPUN, folder / PEER)
     plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
     for name in plan.figures:
         figure = draw(name, plan, sets, entries, grains, folder / DATA)
         if figure is not None:
             save(figure, into / FIGURES / f"{name}.png")
-    if (springs := beside[-1]) is not None:
+    if springs is not None:
         save(spring_back(springs), into / FIGURES / "spring_back.png")
     template = (folder / TEMPLATE).read_text(encoding="utf-8")
-    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, *beside)))
+    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, *beside, springs, repeats)))
 
 
 def draw(name, plan, sets, entries, grains, data):

@@ -58,6 +58,8 @@ from ratd.observables.energy import DISSIPATED
 
 __all__ = ["findings"]
 
+REPEATED_AT = (0.05, 0.1, 0.2, 0.3, 0.48)
+"""Filling factors at which clusters that were made once more are set beside the first ones."""
 SLIDING = 1e-16
 """Energy [J] lost by sliding in a cluster at which it is said to begin: the least in the printed Fig. 8."""
 AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
@@ -340,6 +342,26 @@ def _mach(name, strain_rate, phi, n=PAPER_N):
     return face / sound
 
 
+def of_repeats(sets, repeats):
+    """Pressures of clusters that were made once more, by another state of the code, over the first ones.
+
+    Parameters
+    ----------
+    sets, repeats : dict of str to xarray.Dataset
+    """
+    found = {}
+    for name, table in repeats.items():
+        pair = of_same_clusters([sets[name], table])
+        found[f"{name}.repeated"] = pair[0].sizes["seed_number"]
+        for phi in REPEATED_AT:
+            near = [_near(each, phi) for each in pair]
+            if phi < sets[name]["phi"].values[-1] and np.isfinite(near).all():
+                both = np.stack(near, axis=1)
+                found[f"{name}.over_first_{phi:g}"] = measured(of_means(both, lambda mean: mean[1] / mean[0]))
+                found[f"{name}.parted_{phi:g}"] = _again(*pair, phi)
+    return found
+
+
 def _near(table, phi):
     """Pressures of single clusters near a filling factor, (seeds,)."""
     k = _bin_at(table, phi)
@@ -364,7 +386,7 @@ def worst_balance(sets, values):
     return {"long_steps.residual": max(residuals)} if residuals else {}
 
 
-def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=None):
+def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=None, repeats=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -383,12 +405,14 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=Non
         See `ratd.experiments.compression.beside_lammps.of_dense`.
     springs : pandas.DataFrame, optional
         See `ratd.experiments.compression.springs.of_springs`.
+    repeats : dict of str to xarray.Dataset, optional
+        Sets that were made once more.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
     for name, table in sets.items():
         values |= of_set(name, table)
-    values |= of_pairs(sets)
+    values |= of_pairs(sets) | of_repeats(sets, repeats or {})
     values |= worst_balance(sets, values)
     both = [name for name in (HIGH, BY_SIZE[-1]) if name in sets]
     if len(both) == 2:
