@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from ratd.aggregates.strength import compressive_strength_kataoka2013
+from ratd.base.words import plural
 from ratd.experiments.compression.strength import mean_pressure, of_means
 from ratd.experiments.compression.tables import bins
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure
@@ -48,14 +49,12 @@ def read_sets(files):
 
 def seeds_text(table):
     """How many clusters of what a table holds, such as ``10 clusters of 1024``."""
-    n = table.sizes["seed_number"]
-    return f"{n} cluster{'s' if n > 1 else ''} of {table['n_monomers'].item()}"
+    return f"{plural(table.sizes['seed_number'], 'cluster')} of {table['n_monomers'].item()}"
 
 
 def runs_text(table):
     """How many runs a table has, such as ``10 runs``."""
-    n = table.sizes["seed_number"]
-    return f"{n} run{'s' if n > 1 else ''}"
+    return plural(table.sizes["seed_number"], "run")
 
 
 def strain_text(table):
