@@ -26,6 +26,8 @@ TWO_COLUMNS = 180 * MILLIMETRE
 # Of Okabe and Ito's palette, told apart with any colour vision.
 HIGHLIGHT = "#E69F00"
 GREY = "#8A8A8A"
+TYPE_COLOUR = {"BA": "#D55E00", "BAM1": "#009E73", "BAM2": "#0072B2"}
+"""Colour of each type of growth, nearest to the paper's red, green and blue."""
 ENERGY_COLOURS = {
     "rolling": "#0072B2",
     "twisting": "#D55E00",

@@ -5,9 +5,9 @@ import numpy as np
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.cells import TYPES
 from ratd.experiments.spin_up.figures.figure10 import LOOK
-from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
+from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
-from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, TWO_COLUMNS, logarithmic, new_figure, styled
+from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, TWO_COLUMNS, TYPE_COLOUR, logarithmic, new_figure, styled
 from ratd.validation.damping import RATE, WAITING
 from ratd.validation.findings import off_the_answer, ratios, runs_of_solid_grains
 

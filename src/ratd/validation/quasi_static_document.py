@@ -15,10 +15,10 @@ from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, size_key
-from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER
+from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.run_files import read_table
-from ratd.pictures.style import GREY, TWO_COLUMNS, new_figure, save, styled
+from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, new_figure, save, styled
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import remnant

@@ -93,8 +93,9 @@ def show(path, out):
     marks = [disruption(run) for run in runs]
     numbers = sorted({run.attrs["initial_n_monomers"] for run in runs})
     # starts of one grain, or grains that differ
-    what = f"{plural(len(runs), 'start')} of {plural(numbers[0], 'monomer')}"
-    if len(numbers) > 1:
+    if len(numbers) == 1:
+        what = f"{plural(len(runs), 'start')} of {plural(numbers[0], 'monomer')}"
+    else:
         what = f"{plural(len(runs), 'grain')} of {numbers[0]} to {plural(numbers[-1], 'monomer')}"
     lines = [f"{what}, mean ± standard deviation:"]
     lines += [f"{answer(name, [float(mark[name]) for mark in marks], 'rad/s')}: {text}" for name, text in MARKS.items()]

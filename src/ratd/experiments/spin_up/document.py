@@ -42,7 +42,7 @@ from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import fragment_table, spun_up_fragments
 from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files, spun_up_table
-from ratd.experiments.spin_up.marks import disruption
+from ratd.experiments.spin_up.marks import MARK, disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
@@ -246,7 +246,7 @@ def findings(data, fits):
     values |= beside.of_lammps(**data.lammps)
     values |= of_studies(data.studies) | of_literature(data.driven, data.grown)
     values |= of_exponents(data.fragments[DRIVEN])
-    values |= of_radiation(data.driven, data.grown, mark=ensemble.MARK)
+    values |= of_radiation(data.driven, data.grown, mark=MARK)
     values |= beside.of_heat(values["radiation.q-S BA 100 ours"].value * NM)
     if data.mark_rules is not None:
         values |= of_mark_rules(data.mark_rules)

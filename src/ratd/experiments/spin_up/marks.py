@@ -81,6 +81,8 @@ VARIABLES = {
 }
 """Units and meaning of every variable of `disruption`, in order. All are float64 scalars, NaN where undefined."""
 
+MARK = "omega_mass_75"
+"""The mark that the documents tell results by."""
 MARKS = ("omega_disr", "omega_stress_max", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 """The marks that a run may lack."""
 

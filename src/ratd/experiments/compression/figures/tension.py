@@ -6,7 +6,7 @@ import xarray as xr
 from ratd.aggregates.strength import TENSILE_FACTOR, tensile_strength_tatsuuma2019
 from ratd.base.statistics import mean_of
 from ratd.experiments.compression.tension_findings import HELD, in_units, main_pulls, nominal_phi
-from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, new_figure, styled
+from ratd.pictures.style import GREY, ONE_COLUMN, TYPE_COLOUR, logarithmic, new_figure, styled
 from ratd.pipeline import io
 
 WAYS = {(1, 0): "one axis", (1, 1): "unloaded first, one axis", (3, 0): "three axes"}
@@ -15,8 +15,8 @@ ASIDE = (1.0, 0.92, 1.0, 1.1, 1.21)
 """Factors of the filling factor by which the signs of these ways, and of other numbers, are moved to be seen."""
 LOOKS = (("D", "black"), ("D", "white"), ("X", "black"), ("s", GREY), ("v", "white"))
 """Marker and the colour that fills it, of the same."""
-TYPES = {"BA": ("#D55E00", "."), "BAM1": ("#009E73", "x"), "BAM2": ("#0072B2", "+")}
-"""Colour, that of the type on all pages, and marker of grains that were spun up."""
+TYPE_MARKS = {"BA": ".", "BAM1": "x", "BAM2": "+"}
+"""Marker of grains that were spun up."""
 WITHIN = 0.15
 """Half the width of the band about the formula."""
 
@@ -42,10 +42,10 @@ def tension(entries, spun=None):
             look = {"marker": marker, "color": "black", "mfc": fill, "ls": "none", "ms": 4, "mew": 0.6}
             handles.append(axes.errorbar(phi * aside, mean, error, capsize=2, elinewidth=0.6, label=label, **look))
     for kind in [] if spun is None else np.unique(spun["type"]):
-        own, (colour, marker) = spun["type"] == kind, TYPES.get(kind, ("black", "1"))
+        own, marker = spun["type"] == kind, TYPE_MARKS.get(kind, "1")
         phi = spun["phi"][own]
         over = spun["strength"][own] / tensile_strength_tatsuuma2019(1.0, 1.0, phi)
-        look = {"color": colour, "ms": 3, "mew": 0.6, "zorder": 1}
+        look = {"color": TYPE_COLOUR.get(kind, "black"), "ms": 3, "mew": 0.6, "zorder": 1}
         handles += axes.plot(phi, over, marker, label=f"{kind} spun up", **look)
     axes.set(xscale="log", yscale="log", xlabel=r"filling factor $\phi$ at the start")
     axes.set_ylabel(r"strength / (" + _formula_text() + r"$\,\gamma/r_0$)")

@@ -8,12 +8,14 @@ from ratd.base.statistics import mean_of
 from ratd.base.units import NM
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import cell_of, size_key
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit
 from ratd.experiments.spin_up.figures.style import sizes_label, type_style
 from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import ONE_COLUMN, label_ends, logarithmic, nanometres, new_figure, styled
 
-MARK, MARK_TEXT = "omega_mass_75", "where a quarter of the mass is lost"
+MARK_TEXT = "where a quarter of the mass is lost"
+"""What `MARK` is."""
 
 
 @styled

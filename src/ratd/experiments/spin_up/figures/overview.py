@@ -7,6 +7,7 @@ from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.figures.style import (
     middle_and_most,
@@ -19,7 +20,6 @@ from ratd.experiments.spin_up.figures.style import (
 from ratd.pictures.snapshots import drive_of, drive_text
 from ratd.pictures.style import TWO_COLUMNS, label_ends, logarithmic, nanometres, new_figure, styled
 
-MARK = "omega_mass_75"
 TITLE = "angular velocity at which a quarter of the mass is lost, over that of the paper"
 APART = 1.6
 """Distance of the types at one size over that of the other figures (`offsets`)."""

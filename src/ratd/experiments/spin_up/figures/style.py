@@ -3,10 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from ratd.pictures.style import bar_lengths, nanometres
+from ratd.pictures.style import TYPE_COLOUR, bar_lengths, nanometres
 
-# Okabe and Ito's palette, told apart with any colour vision; nearest to the paper's red, green and blue.
-TYPE_COLOUR = {"BA": "#D55E00", "BAM1": "#009E73", "BAM2": "#0072B2"}
 TYPE_MARKER = {"BA": "o", "BAM1": "s", "BAM2": "^"}
 _OTHER_COLOURS = ("#CC79A7", "#000000", "#56B4E9")
 _OTHER_MARKERS = ("D", "v", "P")

@@ -10,7 +10,7 @@ from ratd.experiments.spin_up.calibration import PRINTED_STEP
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
-from ratd.experiments.spin_up.findings.ensemble import MARK
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
 from ratd.experiments.spin_up.parameters import PARAMETERS, effect

@@ -12,7 +12,8 @@ import pandas as pd
 from ratd.base.statistics import equal_weights, mean_of, rank_correlation, slope_error, slope_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
-from ratd.experiments.spin_up.findings.ensemble import MARK, middle, of_class
+from ratd.experiments.spin_up.findings.ensemble import middle, of_class
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
 from ratd.experiments.spin_up.printed import FIRST_LOSS, PAPER_MEAN_RADIUS

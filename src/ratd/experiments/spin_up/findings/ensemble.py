@@ -15,17 +15,16 @@ from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import slopes
 from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
-    "CLASSES", "MARK", "MARKS", "beside_print", "marks_compared", "of_drive", "of_table_3",
+    "CLASSES", "MARKS", "beside_print", "marks_compared", "of_drive", "of_table_3",
     "strength_omega", "table_3_by_mark", "what_contacts_hold",
 ]  # fmt: skip
 
-MARK = "omega_mass_75"
-"""The mark that the document gives."""
 MARKS = {"omega_first_loss": "first loss", "omega_mass_75": "a quarter", "omega_disr": "omega_disr"}
 CLASSES = {"small": (40, 275), "large": (275, 600)}
 """Classes of a_eff [nm]: 50 to 250, and 300 to 550 nm."""

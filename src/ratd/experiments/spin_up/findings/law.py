@@ -10,7 +10,8 @@ from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import cell_of
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
-from ratd.experiments.spin_up.findings.ensemble import MARK, MARKS
+from ratd.experiments.spin_up.findings.ensemble import MARKS
+from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, unit_of
 
