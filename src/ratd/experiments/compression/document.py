@@ -1,4 +1,4 @@
-"""docs/compression.md and its figures, drawn again from the data beside them.
+"""docs/compression.md, its appendix and their figures, drawn again from the data beside them.
 
 python -m ratd.experiments.compression.document collect RESULTS    take tables or new seeds from a folder of results
 python -m ratd.experiments.compression.document redraw             figures and text, in seconds
@@ -30,8 +30,10 @@ __all__ = ["collect", "main", "read_data", "redraw"]
 
 DATA = Path("docs/compression/data")
 FIGURES = Path("docs/compression")
-TEMPLATE = Path("docs/templates/compression.md")
-DOCUMENT = Path("docs/compression.md")
+DOCUMENTS = {
+    Path("docs/templates/compression.md"): Path("docs/compression.md"),
+    Path("docs/templates/compression_appendix.md"): Path("docs/compression_appendix.md"),
+}
 CONFIGS = (
     "config/config.yaml",
     "config/spin_up.yaml",
@@ -141,7 +143,7 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
 
 
 def redraw(folder=".", into=None):
-    """Write the document and its figures.
+    """Write the document, its appendix and their figures.
 
     Parameters
     ----------
@@ -160,8 +162,10 @@ def redraw(folder=".", into=None):
             save(figure, into / FIGURES / f"{name}.png")
     if springs is not None:
         save(spring_back(springs), into / FIGURES / "spring_back.png")
-    template = (folder / TEMPLATE).read_text(encoding="utf-8")
-    write_text(into / DOCUMENT, fill(template, findings(sets, entries, grains, *beside, springs, repeats)))
+    values = findings(sets, entries, grains, *beside, springs, repeats)
+    for template, document in DOCUMENTS.items():
+        text = (folder / template).read_text(encoding="utf-8")
+        write_text(into / document, fill(text, values, str(template)))
 
 
 def draw(name, plan, sets, entries, grains, data):

@@ -15,7 +15,7 @@ __all__ = ["STRAIN", "LongSteps", "integrators", "longest_strain"]
 
 STRAIN = 6e-6
 """By which part an edge of the box may change in a step where the monomers are of ice and of 0.1 um: 10 t_0 at
-C_v = 3e-7. In longer steps the pressure of a loose cluster is too low (docs/compression.md, "Fewer steps")."""
+C_v = 3e-7. In longer steps the pressure of a loose cluster is too low (docs/compression_appendix.md, "Fewer steps")."""
 
 ROLLED = 2 / 3
 """Part of the critical rolling displacement by which a contact may roll in a long step at most, so that none rolls past
