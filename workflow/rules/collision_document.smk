@@ -1,4 +1,4 @@
-# docs/collision.md from the collisions that are committed with it: seconds, and no collision is computed.
+# docs/collision.md and its appendix from the collisions that are committed with it: seconds, and no collision is computed.
 from ratd.experiments.collision import document_plan as page
 
 PAGE_TABLES = [name for name in COLLISION_TABLES if name != "collision_clusters"]
@@ -98,9 +98,11 @@ rule collision_document:
         table=page.TABLES.format(name="collision_table"),
         thresholds=page.TABLES.format(name="collision_thresholds"),
         likeness=page.TABLES.format(name="collision_likeness"),
-        template="docs/templates/collision.md",
+        document_template="docs/templates/collision.md",
+        appendix_template="docs/templates/collision_appendix.md",
     output:
         document="docs/collision.md",
+        appendix="docs/collision_appendix.md",
     log:
         "results/collision_study/logs/document.log",
     benchmark:
@@ -111,6 +113,6 @@ rule collision_document:
         task=task("analyse", "ratd.experiments.collision.document:document"),
         settings={},
     message:
-        "Write docs/collision.md"
+        "Write docs/collision.md and its appendix"
     script:
         "../scripts/analyse.py"

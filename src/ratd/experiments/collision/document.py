@@ -1,4 +1,6 @@
-"""docs/collision.md: the values of its slots, from docs/collision/data; `.claims` has what its sentences say."""
+"""docs/collision.md and its appendix: the values of their slots; `.claims` has what their sentences say."""
+
+from pathlib import Path
 
 import numpy as np
 from scipy.stats import ttest_ind
@@ -404,11 +406,11 @@ def tables_of(files):
 
 
 def document(files, settings, say):
-    """The document of a job of the pipeline: its template, filled."""
+    """The document of a job of the pipeline and its appendix: their templates, filled."""
     tables = tables_of(files)
     wrong = [claim for claim, holds in claims(*tables).items() if not holds]
     for claim in wrong:
         say(f"no longer so, reread the document: {claim}")
-    with open(files["template"], encoding="utf-8") as file:
-        text = file.read()
-    return {"document": fill(text, values(*tables), files["template"])}
+    found = values(*tables)
+    templates = {name: Path(files[f"{name}_template"]) for name in ("document", "appendix")}
+    return {name: fill(path.read_text(encoding="utf-8"), found, str(path)) for name, path in templates.items()}
