@@ -46,7 +46,7 @@ _HOME = {
     "read_runs": "experiments.saved",
     "spin_up": "experiments.spin_up.run",
     "stretch": "experiments.compression.stretch",
-    "write_particles": "aggregates.particles",
+    "write_particles": "aggregates.write_particles",
 }
 __all__ = sorted([*_HOME, "laws"])
 

@@ -1,11 +1,14 @@
 """Spheres in files of other programs: read back by ratd, by OVITO and by ASE."""
 
+import warnings
+
 import numpy as np
 import pytest
 
 import ratd
 from files import make_grain, make_run
-from ratd.aggregates.particles import Particles, read_particles, write_particles
+from ratd.aggregates.particles import Particles, read_particles
+from ratd.aggregates.write_particles import write_particles
 from ratd.base.errors import FileError, InputError
 
 FORMATS = ("txt", "dat", "csv", "xyz", "extxyz", "dump", "lammpstrj")
@@ -61,6 +64,8 @@ def dump(style, columns, rows):
     ("name", "text"),
     [
         ("a.txt", "0 0 0 20\n0 0 40 20\n"),
+        ("A.TXT", "# unit: um\nx y z r\n0 0 0 0.02\n0 0 0.04 0.02\n"),
+        ("a.xyz", "1\nProperties=pos:R:3:r:R:1\n0 0 0 9\n\n2\nProperties=pos:R:3:r:R:1\n0 0 0 20\n0 0 40 20\n\n"),
         ("a.txt", "# made by hand\nx y z r\n0 0 0 20  # the first\n\n0 0 40 20\n"),
         ("a.dat", "x [nm]\ty\tz\tr\n0\t0\t0\t20\n0\t0\t40\t20\n".replace(" [nm]", "[nm]")),
         ("a.txt", "# x y z r\n0 0 0 20\n0 0 40 20\n"),
@@ -95,6 +100,17 @@ def test_files_as_others_write_them(tmp_path, name, text):
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
+        # more columns than names: pandas would take the first ones for an index, and shift the others
+        (
+            "a.xyz",
+            "1\nProperties=species:S:1:pos:R:3:radius:R:1\nX 0 0 0 30 20\n",
+            "names 5 columns, .* and its rows have 6",
+        ),
+        ("a.dump", dump("nano", "id radius x y z", "1 20 0 0 0 9\n2 20 0 0 40 9\n"), "names 5 columns, .* rows have 6"),
+        ("a.txt", "0 0 0 20\n0 0 40 20 7\n", "its rows differ in their number of columns"),
+        ("a.csv", "x,x,y,z,r\n0,0,0,0,20\n", "it has more than one column x"),
+        ("a.txt", "x y z r\n", "it holds no spheres"),
+        ("a.xyz", "1\nProperties=pos:R:3:r:R:1\n0 0 0 20\n0 0 40 20\n", "a frame begins with '0 0 40 20'; allowed"),
         ("a.txt", "0 0 20\n", "is no .txt file of spheres .there is no column radius; the columns are x, y, z"),
         ("a.txt", "", "is no .txt file of spheres .it is empty"),
         ("a.txt", "0,0,0,20\n", "the columns are x; in a .txt file columns are parted by blanks or tabs"),
@@ -104,7 +120,7 @@ def test_files_as_others_write_them(tmp_path, name, text):
             "0 0 0 -20\n",
             "holds 1 spheres; allowed: finite numbers x, y, z and radii above 0; sphere 1 has",
         ),
-        ("a.txt", "x y z r name\n0 0 0 20\n", "its first line names 5 columns, and the next one has 4"),
+        ("a.txt", "x y z r name\n0 0 0 20\n", "it names 5 columns, x, y, z, radius, name, and its rows have 4"),
         ("a.xyz", "1\nas Newton's apple\n0 0 0 20\n", ".it has no radii; its second line must be"),
         ("a.xyz", "", "it has 0 frames, and frame -1 was asked for"),
         ("a.csv", "x,y,z,r\n0,0,zero,20\n", "is no .csv file of spheres .z of sphere 1 is 'zero', which is no number"),
@@ -280,3 +296,14 @@ def test_snapshots_of_an_evolution_and_a_compression_are_frames(tmp_path, grain)
         back = read_particles(tmp_path / "film.dump", frame=k)
         np.testing.assert_allclose(back.position, run["snapshot_position"][k], rtol=1e-10, atol=1e-20)
         np.testing.assert_allclose(back.box, run["snapshot_box_length"].values[k], rtol=1e-10)
+
+
+def test_contacts_through_the_faces_of_a_box_are_not_lost_in_silence():
+    """Four spheres in a row that a box of their length closes to a ring."""
+    position = np.array([[100e-9 * k, 0.0, 0.0] for k in range(4)])
+    box = np.array([400e-9, 200e-9, 200e-9])
+    with pytest.warns(UserWarning, match="1 contact of these spheres reach"):
+        assert Particles(position, np.full(4, 50e-9), box).grain("q-S").n_contacts == 3
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Particles(position, np.full(4, 50e-9), 2.0 * box).grain("q-S")

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 import ratd
 from files import grains_file, make_grain
-from ratd.aggregates.particles import write_particles
+from ratd.aggregates.write_particles import write_particles
 from ratd.command import COMMANDS, SHOWN, main
 from ratd.experiments import command as commands
 from ratd.experiments.collision.figures.snapshots import origin_of, positions

@@ -1,43 +1,55 @@
-"""Spheres in files of other programs: text, CSV, extended XYZ and LAMMPS dumps, read and written."""
+"""Spheres in files of other programs: text, CSV, extended XYZ and LAMMPS dumps, read."""
 
 import os
 import re
 import shlex
 import warnings
 from io import StringIO
-from itertools import pairwise, takewhile
+from itertools import dropwhile, pairwise, takewhile
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from scipy.spatial import cKDTree
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import LARGEST_RADIUS, SMALLEST_RADIUS, is_dust, is_number, is_whole, likely_unit
+from ratd.base.checks import LARGEST_RADIUS, SMALLEST_RADIUS, is_dust, is_whole, likely_unit
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
-from ratd.pipeline.atomic import write_text
+from ratd.base.words import plural
 
-__all__ = ["Particles", "read_particles", "write_particles"]
+__all__ = [
+    "STYLES",
+    "TABLES",
+    "XYZ",
+    "Particles",
+    "factor_of",
+    "path_of",
+    "read_particles",
+    "reader_of",
+    "suffix_of",
+]
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
 """Units of length in files, in m."""
 _USUAL, _DOUBTFUL = "nm", 1e-9
 """The unit of a file that states none, and the median radius [m] below which another one is likely."""
 _COLUMNS = {"x": "x", "y": "y", "z": "z", "r": "radius", "radius": "radius", "xu": "x", "yu": "y", "zu": "z"}
-_STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
+STYLES = {"m": "si", "cm": "cgs", "um": "micro", "nm": "nano", "angstrom": "metal"}
 """Unit of length -> style of units in LAMMPS, which its dumps may name."""
-_LENGTHS = {style: unit for unit, style in _STYLES.items()} | {"real": "angstrom"}
+_LENGTHS = {style: unit for unit, style in STYLES.items()} | {"real": "angstrom"}
 """Style of units in LAMMPS -> unit of length; others have none that dust is measured in."""
 _BRACKETS = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
 _OTHER_NAMES = {"micron": "um", "microns": "um", "micrometer": "um", "a": "angstrom", "å": "angstrom"}
 """Other names of `UNITS`."""
 _UNIT = re.compile(r"[\s\[(_]([a-z]+)")
-_TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
+_STATED = re.compile(r"#\s*(?:length\s+)?units?\s*[:=]\s*(\S+)\s*$", re.IGNORECASE)
+"""A comment that states the unit of a table."""
+TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
 _PARTED = {",": "commas", " ": "blanks or tabs"}
-_XYZ, _DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
-SUFFIXES = (*_TABLES, *_XYZ, *_DUMP)
+XYZ, DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
+SUFFIXES = (*TABLES, *XYZ, *DUMP)
 
 
 class Particles(NamedTuple):
@@ -58,8 +70,16 @@ class Particles(NamedTuple):
     box: np.ndarray | None = None
 
     def grain(self, material: str | Material, **about) -> Grain:
-        """The aggregate of these spheres, see `ratd.Grain`."""
-        return Grain(self.position, self.radius, material, **about)
+        """The aggregate of these spheres in open space, see `ratd.Grain`; warns of contacts that the box would add."""
+        grain = Grain(self.position, self.radius, material, **about)
+        through = 0 if self.box is None else _through_the_faces(self.position, self.radius, self.box)
+        if through:
+            warnings.warn(
+                f"{plural(through, 'contact')} of these spheres reach through the faces of their periodic box; the "
+                "grain is in open space, without them",
+                stacklevel=2,
+            )
+        return grain
 
 
 def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -> Particles:
@@ -73,8 +93,8 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         with x y z or xu yu zu, and radius).
     unit : str, optional
         Of all lengths in the file: m, cm, mm, um, nm or angstrom. If not given, that which the file states (``x [um]``
-        in the names of its columns, ``unit=um`` in extended XYZ, the style of units of LAMMPS), or nm. A unit in
-        brackets that is none is an error.
+        in the names of its columns, a comment ``# unit: um``, ``unit=um`` in extended XYZ, the style of units of
+        LAMMPS), or nm. A unit in brackets that is none is an error.
     frame : int, optional
         Which one, in a file of several; the last if not given.
 
@@ -89,10 +109,10 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     InputError
         If the unit is unknown or another one than the file states, or the radii are not those of dust in it.
     """
-    path = _path(path)
+    path = path_of(path)
     if unit is not None:
-        _factor(unit)
-    reader = _reader(path)
+        factor_of(unit)
+    reader = reader_of(path)
     if not is_whole(frame):
         raise InputError(f"frame is {frame!r}; it must be a whole number")
     try:
@@ -100,9 +120,12 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
         missing = [name for name in ("x", "y", "z", "radius") if name not in table]
         if missing:
             hint = ""
-            if len(table.columns) == 1 and path.suffix in _TABLES:
-                hint = f"; in a {path.suffix} file columns are parted by {_PARTED[_TABLES[path.suffix]]}"
+            if len(table.columns) == 1 and suffix_of(path) in TABLES:
+                hint = f"; in a {path.suffix} file columns are parted by {_PARTED[TABLES[suffix_of(path)]]}"
             raise ValueError(f"there is no column {', '.join(missing)}; the columns are {', '.join(table)}{hint}")
+        twice = table.columns[table.columns.duplicated()]
+        if len(twice):
+            raise ValueError(f"it has more than one column {twice[0]}")
         values = np.stack([_numbers(table[name], name) for name in ("x", "y", "z", "radius")], axis=1)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({error.strerror})") from error
@@ -124,7 +147,7 @@ def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -
     if None not in (unit, stated) and unit != stated:
         raise InputError(f"{path}: states that its lengths are in {stated}, and was to be read in {unit}")
     _check_unit(path, unit or stated, values[:, 3])
-    factor = _factor(unit or stated or _USUAL)
+    factor = factor_of(unit or stated or _USUAL)
     values = values * factor
     return Particles(values[:, :3].copy(), values[:, 3].copy(), None if box is None else box * factor)
 
@@ -140,7 +163,7 @@ def _numbers(column, name):
     return numbers
 
 
-def _path(path):
+def path_of(path):
     if not isinstance(path, str | os.PathLike):
         raise InputError(f"path is {path!r}; it must be the path of a file")
     return Path(path)
@@ -167,25 +190,41 @@ def _check_unit(path, unit, radius):
     )
 
 
-def _factor(unit):
+def factor_of(unit):
     if unit not in UNITS:
         raise InputError(f"unit is {unit!r}; allowed: {', '.join(UNITS)}")
     return UNITS[unit]
 
 
-def _reader(path):
-    if path.suffix in _TABLES:
+def _through_the_faces(position, radius, box):
+    """How many pairs of spheres touch through the faces of a periodic box with edges (3,) alone."""
+    tree = cKDTree(np.mod(position, box), boxsize=box)
+    i, j = tree.query_pairs(2.0 * radius.max(), output_type="ndarray").T
+    apart = position[i] - position[j]
+    near = apart - box * np.round(apart / box)
+    reach = radius[i] + radius[j]
+    touching = np.linalg.norm(near, axis=1) <= reach
+    return int((touching & (np.linalg.norm(apart, axis=1) > reach)).sum())
+
+
+def suffix_of(path):
+    """That of a path in small letters."""
+    return path.suffix.lower()
+
+
+def reader_of(path):
+    if suffix_of(path) in TABLES:
         return _read_table
-    if path.suffix in _XYZ:
+    if suffix_of(path) in XYZ:
         return _read_xyz
-    if path.suffix in _DUMP:
+    if suffix_of(path) in DUMP:
         return _read_dump
     raise InputError(f"{path}: has the suffix {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
 
 
 def _read_table(path, frame):
     """Columns x, y, z and r or radius, by their names or, without these, in this order."""
-    separator = "," if path.suffix == ".csv" else r"\s+"
+    separator = "," if suffix_of(path) == ".csv" else r"\s+"
     # some programs begin a file with a mark of its encoding
     lines = path.read_text(encoding="utf-8-sig").splitlines()
     # the names of the columns may stand in a comment, below others
@@ -193,25 +232,45 @@ def _read_table(path, frame):
         if _names_columns(line.lstrip("# "), separator):
             lines[k] = line.lstrip("# ")
             break
+    comments = [found[1] for line in lines if (found := _STATED.match(line))]
     lines = [line.partition("#")[0].strip() for line in lines]
     lines = [line for line in lines if line]
     if not lines:
         raise ValueError("it is empty")
     words = _words(lines[0], separator)
     named = any(re.match(r"[a-z]", word) and word not in ("nan", "inf") for word in words)
-    table = pd.read_csv(StringIO("\n".join(lines[int(named) :])), sep=separator, header=None)
-    if named and len(words) != len(table.columns):
-        raise ValueError(f"its first line names {len(words)} columns, and the next one has {len(table.columns)}")
     names = ["x", "y", "z", "radius"]
-    if not named and len(table.columns) > len(names):
-        raise ValueError(f"it has {len(table.columns)} columns; more than x y z r need their names in the first line")
-    table.columns = [_name(word) for word in words] if named else names[: len(table.columns)]
+    table = _columns(lines[int(named) :], [_name(word) for word in words] if named else None, separator)
+    if not named:
+        if len(table.columns) > len(names):
+            raise ValueError(
+                f"it has {len(table.columns)} columns; more than x y z r need their names in the first line"
+            )
+        table.columns = names[: len(table.columns)]
     of_lengths = [word for word in words if _name(word) in names]
     stated = {_unit(unit) for word in of_lengths for unit in _BRACKETS.findall(word)}
     stated |= {unit for word in of_lengths for unit in _UNIT.findall(word)} & set(UNITS)
+    stated |= {_unit(_plain(unit)) for unit in comments}
     if len(stated) > 1:
         raise ValueError(f"its columns are in several units, {', '.join(sorted(stated))}")
     return table, None, next(iter(stated), None)
+
+
+def _columns(lines, names, separator=r"\s+"):
+    """The columns of some lines as text and numbers, as many as there are names where these are given."""
+    if not lines:
+        raise ValueError("it holds no spheres")
+    try:
+        table = pd.read_csv(StringIO("\n".join(lines)), sep=separator, header=None)
+    except pd.errors.ParserError as error:
+        raise ValueError("its rows differ in their number of columns") from error
+    if names is not None:
+        if len(names) != len(table.columns):
+            raise ValueError(
+                f"it names {len(names)} columns, {', '.join(names)}, and its rows have {len(table.columns)}"
+            )
+        table.columns = names
+    return table
 
 
 def _unit(name):
@@ -246,7 +305,7 @@ def _names_columns(line, separator):
 def _frames(lines, length):
     """Frames of a file as lists of lines; `length` gives that of the one that begins with some lines."""
     frames = []
-    while lines and any(line.strip() for line in lines):
+    while lines := list(dropwhile(lambda line: not line.strip(), lines)):
         n = length(lines)
         if n < 1:
             raise ValueError(f"a frame begins with {lines[0]!r}; allowed: the number of its spheres")
@@ -263,11 +322,18 @@ def _chosen(frames, frame):
     return frames[frame]
 
 
+def _xyz_length(lines):
+    """How many lines the first frame of a file has."""
+    if not re.fullmatch(r"\s*-?\d+\s*", lines[0]):
+        raise ValueError(f"a frame begins with {lines[0]!r}; allowed: the number of its spheres")
+    return int(lines[0]) + 2
+
+
 def _read_xyz(path, frame):
     lines = path.read_text(encoding="utf-8-sig").splitlines()
     if lines and not re.fullmatch(r"\s*(-?\d+)?\s*", lines[0]):
         raise ValueError("its first line must be the number of spheres; columns x y z r belong into .txt, .dat or .csv")
-    frames = _frames(lines, lambda lines: int(lines[0]) + 2)
+    frames = _frames(lines, _xyz_length)
     lines = _chosen(frames, frame)
     try:
         about = dict(word.partition("=")[::2] for word in shlex.split(lines[1]))
@@ -287,7 +353,7 @@ def _read_xyz(path, frame):
             if width == "1"
             else [f"{name}_{k}" for k in range(int(width))]
         )
-    table = pd.read_csv(StringIO("\n".join(lines[2:])), sep=r"\s+", header=None, names=names)
+    table = _columns(lines[2:], names)
     periodic = _periodic(about.get("pbc", "T T T" if "Lattice" in about else "F F F").split(), "T", "True", "true", "1")
     stated = about.get("unit", about.get("units"))
     stated = None if stated is None else _unit(_plain(stated))
@@ -334,156 +400,8 @@ def _read_dump(path, frame):
     names = lines[begin].split()[2:]
     if {"xu", "yu", "zu"} <= set(names):  # beside those that are wrapped into the box
         names = [f"{name}_wrapped" if name in ("x", "y", "z") else name for name in names]
-    body = StringIO("\n".join(lines[begin + 1 :]))
-    table = pd.read_csv(body, sep=r"\s+", header=None, names=[_COLUMNS.get(name, name) for name in names])
+    table = _columns(lines[begin + 1 :], [_COLUMNS.get(name, name) for name in names])
     if "id" in table:
         table = table.sort_values("id", ignore_index=True)
     periodic = _periodic(lines[at].split("BOUNDS")[1].split(), "pp")
     return table, bounds[:, 1] - bounds[:, 0] if periodic else None, stated
-
-
-def write_particles(content, path: str | Path, unit: str = "nm") -> None:
-    """Write spheres to a file that OVITO, ASE and others read.
-
-    Parameters
-    ----------
-    content : ratd.Grain, Particles, or xarray.Dataset
-        A grain; what `read_particles` gives; or a run: its snapshots, a frame each, or its last state without any.
-    path : path-like
-        By its suffix one of the formats of `read_particles`. Text and CSV hold one frame.
-    unit : str, optional
-        Of all lengths in the file; forces are in nN.
-
-    Notes
-    -----
-    A unit other than nm is stated in the file: in the names of the columns (``x[um]``), or as LAMMPS states it. Text
-    and CSV do not hold the periodic box, of which a warning tells.
-
-    Besides positions and radii the columns are: ``fragment``, the number of the fragment or piece, 0 being the largest;
-    ``normal_force``, that of greatest magnitude on each monomer, above 0 where it pushes [nN]. Monomers that were
-    dropped are left out. The frames of a spin-up are those of the frame that turns with the grain.
-
-    Raises
-    ------
-    InputError
-        If the content, the unit or the suffix is not one of these, or the run has nothing to write.
-    """
-    path = _path(path)
-    factor = _factor(unit)
-    _reader(path)
-    if not isinstance(content, Grain | Particles | xr.Dataset):
-        raise InputError(
-            f"content is of type {type(content).__name__}; it must be a ratd.Grain, spheres of ratd.read_particles, or "
-            "a run"
-        )
-    frames = list(_contents(content))
-    if not frames:
-        raise InputError(
-            f"{path}: the run holds no snapshots to write and no last state; make it with snapshot_every above 0 (a "
-            "compression with snapshots, a list of filling factors)"
-        )
-    if path.suffix in _TABLES:
-        if len(frames) > 1:
-            raise InputError(f"{path}: a {path.suffix} file holds one frame, but there are {len(frames)}; use .xyz")
-        if frames[0][1] is not None:
-            warnings.warn(f"{path}: a {path.suffix} file does not hold the periodic box; use .xyz", stacklevel=2)
-        text = frames[0][0].rename(columns={"radius": "r"}).assign(**_scaled(frames[0][0], factor, radius="r"))
-        if unit != "nm":
-            text = text.rename(columns={name: f"{name}[{unit}]" for name in "xyzr"})
-        text = text.to_csv(sep=_TABLES[path.suffix], index=False, float_format="%.12g")
-    else:
-        write = _xyz if path.suffix in _XYZ else _dump
-        if write is _dump and unit not in _STYLES:
-            raise InputError(f"{path}: LAMMPS has no units with {unit}; allowed: {', '.join(_STYLES)}")
-        text = "".join(
-            write(
-                table.assign(**_scaled(table, factor)), None if box is None else box / factor, about | {"unit": unit}, k
-            )
-            for k, (table, box, about) in enumerate(frames)
-        )
-    write_text(path, text)
-
-
-def _scaled(table, factor, radius="radius"):
-    """Columns of lengths in the unit of the file."""
-    names = {"x": "x", "y": "y", "z": "z", "radius": radius}
-    return {new: table[name] / factor for name, new in names.items()}
-
-
-def _contents(content):
-    """Frames: a table of columns in SI units (forces in nN), edges of the box or None, and what is said of it."""
-    if isinstance(content, Grain | Particles):
-        yield _table(content.position, content.radius), getattr(content, "box", None), {}
-    elif "snapshot_omega" in content:
-        for k in range(content.sizes["snapshot"]):
-            snapshot = content.isel(snapshot=k)
-            fragment = snapshot["snapshot_fragment"].values
-            position = np.stack([snapshot[f"snapshot_{axis}"].values for axis in "xyz"], axis=1)
-            force = snapshot["snapshot_normal_force"].values * 1e9
-            table = _table(position, content["monomer_radius"].values, fragment=fragment, normal_force=force)
-            yield table[fragment >= 0], None, {"omega": float(snapshot["snapshot_omega"])}
-    elif content.sizes.get("snapshot", 0):
-        for k in range(content.sizes["snapshot"]):
-            if "snapshot_time" in content:
-                time = float(content["snapshot_time"].values[k])
-                record = int(np.abs(content["time"].values - time).argmin())
-                more, about = {"fragment": content["snapshot_piece"].values[k]}, {"time": time}
-            else:
-                phi = float(content["snapshot_phi"].values[k])
-                record = int(np.abs(content["phi"].values - phi).argmin())
-                more, about = {}, {"phi": phi}
-            yield _table(content["snapshot_position"].values[k], _radii(content), **more), _box(content, record), about
-    elif "position" in content:
-        more = {"fragment": content["piece"].values} if "piece" in content else {}
-        about = {"time": float(content["time"].values[-1])}
-        yield _table(content["position"].values, _radii(content), **more), _box(content, -1), about
-
-
-def _radii(run):
-    return run["radius" if "radius" in run else "monomer_radius"].values
-
-
-def _box(run, record):
-    """Edges of the box at a record, None in open space."""
-    box = run["box_length"].values[record] if "box_length" in run else np.zeros(3)
-    return box if np.all(box > 0) else None
-
-
-def _table(position, radius, **more):
-    return pd.DataFrame(dict(zip("xyz", np.transpose(position), strict=True)) | {"radius": radius} | more)
-
-
-def _rows(table):
-    return table.to_csv(sep=" ", header=False, index=False, float_format="%.12g", lineterminator="\n")
-
-
-def _xyz(table, box, about, step):
-    kinds = {name: "I" if table[name].dtype.kind == "i" else "R" for name in table if name not in ("x", "y", "z")}
-    properties = "species:S:1:pos:R:3:" + ":".join(f"{name}:{kind}:1" for name, kind in kinds.items())
-    words = [f"Properties={properties}", *(f"{name}={_word(value)}" for name, value in about.items())]
-    if box is not None:
-        words.append(f'Lattice="{box[0]:.12g} 0 0 0 {box[1]:.12g} 0 0 0 {box[2]:.12g}" pbc="T T T"')
-    else:
-        words.append('pbc="F F F"')
-    # no monomer is an atom: X is ASE's name for what is none
-    return f"{len(table)}\n{' '.join(words)}\n{_rows(table.assign(species='X')[['species', *table]])}"
-
-
-def _word(value):
-    return f"{value:.9g}" if is_number(value) else value
-
-
-def _dump(table, box, about, step):
-    place = table[["x", "y", "z"]]
-    low, high = place.min() - table["radius"].max(), place.max() + table["radius"].max()
-    if box is not None:
-        low, high = pd.Series(np.zeros(3), list("xyz")), pd.Series(box, list("xyz"))
-    edges = "".join(f"{low[axis]:.12g} {high[axis]:.12g}\n" for axis in "xyz")
-    sides = "pp pp pp" if box is not None else "ff ff ff"
-    columns = "id type " + " ".join("xu yu zu".split() + list(table.columns[3:]))
-    rows = _rows(table.assign(id=table.index + 1, type=1)[["id", "type", *table]])
-    first = f"ITEM: UNITS\n{_STYLES[about['unit']]}\n" if step == 0 and about["unit"] != "nm" else ""
-    return (
-        f"{first}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(table)}\nITEM: BOX BOUNDS {sides}\n{edges}"
-        f"ITEM: ATOMS {columns}\n{rows}"
-    )

@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.aggregates.particles import read_particles, write_particles
+from ratd.aggregates.particles import read_particles
+from ratd.aggregates.write_particles import write_particles
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.collision import study
