@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgb
 from ratd.aggregates.files import read_grains
 from ratd.aggregates.particles import read_particles
 from ratd.base.errors import InputError
+from ratd.base.words import plural
 from ratd.experiments.command import material_options, out_option, unit_option
 from ratd.experiments.saved import kind_in
 from ratd.geometry.shape import Shape, centre_of_mass
@@ -33,7 +34,7 @@ def command(file, unit, material, out):
     out = file.with_suffix("") if out is None else out
     if file.suffix != ".nc":
         particles = read_particles(file, unit=unit)
-        contacts = "" if material is None else f", {particles.grain(material).n_contacts} contacts"
+        contacts = "" if material is None else f", {plural(particles.grain(material).n_contacts, 'contact')}"
         lines = _picture(particles.position, particles.radius, plain(file.name), out, contacts)
     else:
         if unit is not None or material is not None:
@@ -73,7 +74,7 @@ def show(path, out):
     """Picture of the first grain of a file of grains, and the numbers of all."""
     grains = read_grains(path)
     lines = [
-        f"seed {grain.seed}: {grain.n_monomers} monomers, {grain.n_contacts} contacts, "
+        f"seed {grain.seed}: {plural(grain.n_monomers, 'monomer')}, {plural(grain.n_contacts, 'contact')}, "
         f"porosity {grain.shape.porosity:.3f}"
         for grain in grains
     ]
@@ -96,10 +97,12 @@ def _figure(position, radius, title):
 def _picture(position, radius, title, out, contacts=""):
     """Write the picture of an aggregate; what to say of it."""
     shape = Shape.measure(position, radius, 1.0, 0)
+    least, greatest = (f"{value * 1e9:.4g}" for value in (radius.min(), radius.max()))
+    radii = f"radii {least} to {greatest} nm" if least != greatest else f"radius {least} nm"
     path = Path(f"{out}.png")
     save(_figure(position, radius, title), path)
     return [
-        f"{len(radius)} monomers{contacts}, radii {radius.min() * 1e9:.4g} to {radius.max() * 1e9:.4g} nm",
+        f"{plural(len(radius), 'monomer')}{contacts}, {radii}",
         f"effective radius {np.cbrt(np.sum(radius**3)) * 1e9:.4g} nm, smallest sphere around it "
         f"{shape.enclosing_radius * 1e9:.4g} nm, porosity {shape.porosity:.3f}",
         f"{path} written",

@@ -258,13 +258,17 @@ def _make_starts(block, kind, there, make):
         with atomic(block.piece(0)) as piece:
             shutil.copyfile(block.target, piece)
     pieces = Pieces(block, kind)
-    with progress_bar(len(block.seeds)) as tell:
-        for start in block.seeds:
-            tell(start, 0.0)
-            if start not in pieces:
-                row = make(start, block.checkpoint(start), lambda part, start=start: tell(start, part))
-                pieces.add(start, row)
-            tell(start, 1.0)
+    try:
+        with progress_bar(len(block.seeds)) as tell:
+            for start in block.seeds:
+                tell(start, 0.0)
+                if start not in pieces:
+                    row = make(start, block.checkpoint(start), lambda part, start=start: tell(start, part))
+                    pieces.add(start, row)
+                tell(start, 1.0)
+    finally:
+        # also what was finished before a Ctrl-C or an error
+        pieces.write()
     pieces.join()
 
 

@@ -11,8 +11,8 @@ from ratd.base.materials import Material, get_material
 from ratd.drives.free import rest
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
-from ratd.engine.layout import CONTACTS, DT, RADIUS, STEPS, TIME, VX, WX, X
-from ratd.engine.leapfrog import leapfrog
+from ratd.engine.layout import CONTACTS, DT, FASTEST, RADIUS, STEPS, TIME, VX, WX, X
+from ratd.engine.leapfrog import leapfrog, limit_step
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
@@ -30,6 +30,8 @@ AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
 VIBRATION = 16
 """Steps after a record within which a vibration that had just begun moves all that it will: then its balance tells."""
+SLOWEST = 1e-3
+"""Part of the first step below which a later one tells that a run has blown up."""
 DEEPEST = 0.5
 """Two spheres may overlap at the start by at most this part of the smaller radius."""
 FARTHEST = 0.1
@@ -107,7 +109,9 @@ def evolve(
     timestep_factor : float
         The step over the shortest time of any contact, when `timestep` is not given.
     damping : {"implicit", "explicit"}
-        How the normal damping is integrated (`ratd.engine.leapfrog`).
+        How the normal damping is integrated (`ratd.engine.leapfrog`). Implicit is stable at any step, and damps too
+        little where the damping is strong, as it is with DMT: spheres that hit each other rebound too fast. For these
+        take "explicit" and a timestep_factor of 0.03, or `ratd.collide`, which does so itself.
     drag : float
         Rate [1/s] at which velocities and spins decay, to bring an aggregate to rest in open space.
     contacts : (k, 2) or (k, 5) array_like, optional
@@ -183,15 +187,22 @@ def evolve(
         contacts = touching if contacts is None else contacts
         how = {"velocity": velocity, "spin": spin, "kind": kind}
         state = new_state(position, radius, materials, contacts, law, box, integrator, **how)
+        if timestep is None and velocity is not None:
+            # as the integrator does after each step
+            state.scalar[FASTEST] = np.linalg.norm(velocity, axis=1).max()
+            limit_step(state, timestep_factor * radius.min())
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
     moved, checked = _moved(rows, rows[0]), 1
+    first_step = state.scalar[DT]
     with attached("run", lambda error: _dataset(getattr(error, "state", state), rows, pictures, law, box)):
         while len(rows) <= records:
             goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
             state, code = run(state, law, drive, box, integrator, goal)
+            if code == STEPS_DONE and timestep is None:
+                _check_pace(state, first_step)
             if code != STEPS_DONE:
                 no_step = state.scalar[TIME] == rows[-1][0]
                 rows.append(rows[-1] if no_step else _row(state, law, box, rows[0]))
@@ -212,7 +223,7 @@ def evolve(
             if progress is not None and to_tell.passed():
                 now = state.scalar[TIME]
                 progress(now / duration, pace.to_go(duration - now, now), rows[-1])
-    _warn_of_passing(velocity, radius, state.scalar[DT])
+    _warn_of_passing(velocity, radius, max(first_step, state.scalar[DT]))
     return _dataset(state, rows, pictures, law, box)
 
 
@@ -236,6 +247,16 @@ def _warn_of_passing(velocity, radius, timestep):
             f"{timestep:.2g} s, more than the smallest radius: they may have passed through each other; take a smaller "
             "timestep",
             stacklevel=3,
+        )
+
+
+def _check_pace(state, first_step):
+    """End a run whose spheres have become so fast that steps which none of them leaps in hardly get on."""
+    if state.scalar[DT] < SLOWEST * first_step:
+        raise RuntimeError(
+            f"at {state.scalar[TIME]:.3g} s a sphere moves at {state.scalar[FASTEST]:.3g} m/s, and the time step, "
+            f"{first_step:.2g} s at the start, is down to {state.scalar[DT]:.2g} s: the run has blown up; take a "
+            "smaller time step, by timestep_factor or timestep"
         )
 
 

@@ -37,6 +37,8 @@ points only, where there is no velocity to take from it."""
 PRESSED = 0.25
 """Part of its compression in equilibrium by which each contact is pressed, at least, where an aggregate falls apart as
 it comes to rest: under DMT nothing pulls beyond touch, so that spheres which only touch bounce off each other."""
+FAR = 10.0
+"""See `near_the_origin`."""
 LIMIT = 1_000_000
 """Steps after which a grain that is not yet relaxed is given up."""
 
@@ -74,7 +76,7 @@ def relax(grain, *, law=None, timestep_factor=0.125):
     law = jkr() if law is None else law
     box, integrator = open_space(), leapfrog(timestep_factor=timestep_factor)
     for start in (seated, partial(pressed, by=PRESSED)):
-        own = start(grain)
+        own = near_the_origin(start(grain))
         state = new_state(own.position, own.radius, own.material, own.contacts, law, box, integrator)
         state = find_rest(state, law, free(), box, integrator)
         label_fragments(state)
@@ -86,6 +88,14 @@ def relax(grain, *, law=None, timestep_factor=0.125):
         f"As it comes to rest under the law of contact the aggregate comes apart: {whole} of its {grain.n_monomers} "
         "spheres are left in the largest piece; give positions in which its contacts are at rest."
     )
+
+
+def near_the_origin(grain):
+    """A grain whose centre is within `FAR` times its size of the origin: farther out contacts lose digits."""
+    centre = grain.position.mean(axis=0)
+    if np.abs(centre).max() <= FAR * np.ptp(grain.position, axis=0).max():
+        return grain
+    return grain.replace(position=grain.position - centre)
 
 
 def find_rest(state, law, drive, box, integrator):

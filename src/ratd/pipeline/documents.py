@@ -119,7 +119,10 @@ def _fine_enough(error, form):
 
 
 def _number(value, form):
-    text = format(value, form).replace("-", "−") if value else "0"
+    text = format(value, form) if value else "0"
+    if float(text.rstrip("%")) == 0.0:
+        text = text.removeprefix("-")
+    text = text.replace("-", "−")
     mantissa, e, exponent = text.partition("e")
     return f"{mantissa}·10{str(int(exponent.replace('−', '-'))).translate(_RAISED)}" if e else text
 

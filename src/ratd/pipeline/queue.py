@@ -23,8 +23,8 @@ WRITE_EVERY = 20.0
 
 
 def key(*numbers):
-    """What names a row, tuple of float: numbers that differ by rounding alone are the same."""
-    return tuple(float(f"{number:.9g}") for number in numbers)
+    """What names a row, tuple of numbers: those that differ by rounding alone are the same; seeds stay as they are."""
+    return tuple(number if isinstance(number, int) else float(f"{number:.9g}") for number in numbers)
 
 
 class Table:
@@ -154,19 +154,25 @@ def _one_by_one(tasks, until):
 
 def _side_by_side(tasks, until, processes):
     """As `_one_by_one`, in the order in which rows are finished."""
-    coming, running = iter(tasks), {}
+    coming, running, failed = iter(tasks), {}, None
     with ProcessPoolExecutor(processes) as pool:
         while True:
-            while len(running) < processes and not (until is not None and time.monotonic() > until):
+            while failed is None and len(running) < processes and not (until is not None and time.monotonic() > until):
                 task = next(coming, None)
                 if task is None:
                     break
                 running[pool.submit(_timed, task.make)] = task
+            if not running and failed is not None:
+                raise failed
             if not running:
                 return
             finished, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in finished:
-                yield running.pop(future), *future.result()
+                task = running.pop(future)
+                if future.exception() is None:
+                    yield task, *future.result()
+                else:  # an error of the program: what else is at work is kept first
+                    failed = failed or future.exception()
 
 
 def _timed(make):
@@ -177,6 +183,13 @@ def _timed(make):
     except RuntimeError as error:  # of this row alone: the others go on
         row, sentence = None, f"failed: {error}"
     return row, sentence, time.monotonic() - start
+
+
+def _processes(word):
+    """A number of processes on the command line."""
+    if not word.isdecimal() or int(word) < 1:
+        raise argparse.ArgumentTypeError(f"{word!r}; allowed: a whole number of at least 1")
+    return int(word)
 
 
 def state(tasks, what):
@@ -225,7 +238,7 @@ def command(words, *, module, what, config, data, load, tasks, study=None):
     parser.add_argument("--config", action="append", help=f"config files (default {', '.join(map(str, config))})")
     parser.add_argument("--data", help=f"folder of the tables (default {data})")
     parser.add_argument("--minutes", type=float, help=f"begin no {what} after so long")
-    parser.add_argument("--processes", type=int, default=1, help=f"{what} side by side (default 1)")
+    parser.add_argument("--processes", type=_processes, default=1, help=f"{what} side by side (default 1)")
     parser.add_argument("--list", action="store_true", help="say what there is and what is left")
     arguments = parser.parse_args(words)
     name = getattr(arguments, "study", "")

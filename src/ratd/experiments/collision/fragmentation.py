@@ -119,7 +119,7 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     pandas.Series
         velocity [m/s], error (standard deviation of the bootstrap), low, high (its 16 and 84 %), found (part of its
         samples with a threshold), below, above (the velocities that were tried on both sides of it). NaN where X stays
-        on one side.
+        on one side; error, low and high also where there is one collision on each side.
 
     Raises
     ------
@@ -148,7 +148,12 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     below = velocities[velocities <= middle].max(initial=-np.inf)
     above = velocities[velocities > middle].min(initial=np.inf)
     ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
-    values = {"velocity": middle, "error": np.std(spread, ddof=1), "low": low, "high": high, "found": there.mean()}
+    error = np.std(spread, ddof=1)
+    beside = table[table["velocity"].isin([below, above])]
+    if len(beside) == 2 and len(np.unique(_samples(table))) == 1:
+        # one collision on each side does not tell how others would end
+        error = low = high = np.nan
+    values = {"velocity": middle, "error": error, "low": low, "high": high, "found": there.mean()}
     return pd.Series(values | ends)
 
 
@@ -270,6 +275,12 @@ def _checked(table):
             raise InputError(f"The column {column!r} of the table does not hold numbers alone.") from error
     if not len(table):
         raise InputError("The table has no collisions; it must have at least one row.")
+    wrong = table.index[~(np.isfinite(table["velocity"]) & (table["velocity"] > 0.0))]
+    if len(wrong):
+        raise InputError(
+            f"velocity of the row {wrong[0]} is {table.loc[wrong[0], 'velocity']:g}; it must be a number above 0, in "
+            "m/s."
+        )
     return table
 
 

@@ -26,6 +26,8 @@ DURATION = 3e-6
 """How long a collision lasts [s] (Umstaetter & Urbassek 2020, Sect. 2.3)."""
 STILL = 0.2
 """Part of the velocity at which two clusters that still near each other at the end are said to have barely met."""
+WIDEST = 100.0
+"""Greatest gap at the start over the width of the clusters."""
 FARTHEST = 0.02
 """Part of the smallest radius by which the clusters may come nearer in a step: faster ones would pass through each
 other without a contact."""
@@ -243,4 +245,9 @@ def _check(a, b, velocity, impact_parameter, seed, gap):
     if not is_number(gap) or not gap > 0.0:
         raise InputError(
             f"gap is {gap!r}; it must be a number above 0, in m: the clusters may not overlap at the start."
+        )
+    size = max(np.ptp(grain.position, axis=0).max() + 2.0 * grain.radius.max() for grain in (a, b))
+    if gap > WIDEST * size:
+        raise InputError(
+            f"gap is {gap:g} m; the clusters are {size:.2g} m wide, and it must be at most {WIDEST:g} times as much."
         )

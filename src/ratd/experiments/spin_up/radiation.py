@@ -333,5 +333,5 @@ def _crossing(size, excess, place):
     """Size [m] at which `excess` (..., n) is 0 between `place` - 1 and `place` (...), along a straight line in ln a."""
     place = np.maximum(place, 1)
     low, high = (np.take_along_axis(excess, (place - k)[..., None], axis=-1)[..., 0] for k in (1, 0))
-    with np.errstate(invalid="ignore", divide="ignore"):  # where nothing crosses, what comes out is not used
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):  # what does not cross is not used
         return size[place - 1] * (size[place] / size[place - 1]) ** (low / (low - high))

@@ -18,6 +18,8 @@ COMPUTED = (50e-9, 550e-9)
 
 OUTER = 4
 """Sizes from whose means a law is extrapolated."""
+ROUNDING = 1e-9
+"""Part of a size by which drawn ones differ at least where the scatter of the grains is known."""
 
 
 def measured_law(table, mark, material, kind, draws=0, rng=None):
@@ -54,7 +56,11 @@ def measured_law(table, mark, material, kind, draws=0, rng=None):
     place, mean = _by_size(part, value)
     if len(mean) < 2:
         raise InputError(f"surviving: fewer than two sizes of {material} {kind} were spun up; give at least two")
-    error = value.groupby(size_key(part["a_eff"]).to_numpy()).sem().sort_index().fillna(0.0).to_numpy()
+    each = value.groupby(size_key(part["a_eff"]).to_numpy())
+    scatter = each.std().sort_index()
+    # a size with one grain has the scatter of the others
+    scatter = scatter.fillna(np.sqrt((scatter**2).mean())).fillna(0.0)
+    error = (scatter / np.sqrt(each.size().sort_index())).to_numpy()
     best = _along_lines(*_extended(place, mean[None]))
     spread = error * (rng.normal(size=(draws, len(mean))) if draws else np.zeros((1, 1)))
     return lambda size: best(size)[0], _along_lines(*_extended(place, mean + spread))
@@ -225,7 +231,7 @@ def _sizes(omega, spread, strengths, *given):
         if drawn is not None:
             row["share"] = float(np.isfinite(drawn).mean())
             drawn = drawn[np.isfinite(drawn)]
-            if np.isfinite(smallest) and len(drawn) > 1:
+            if np.isfinite(smallest) and len(drawn) > 1 and np.ptp(drawn) > ROUNDING * smallest:
                 row["a_disr_error"] = float(np.std(drawn, ddof=1))
                 row["low"], row["high"] = (float(size) for size in np.quantile(drawn, [0.16, 0.84]))
         rows.append(row | {"extrapolated": bool(np.isfinite(smallest) and is_extrapolated(smallest))})
