@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from ratd.aggregates.files import grain_row
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow
 from ratd.base.errors import InputError
@@ -48,6 +49,16 @@ def test_lists_are_taken():
     grain = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S")
     assert grain.position.dtype == np.float64
     assert grain.n_contacts == 1
+
+
+def test_the_row_of_a_file_has_the_shape_of_the_grain():
+    z = np.array([0.0, 49.9e-9, 99.8e-9])
+    position = np.column_stack([0 * z, 0 * z, z])
+    row = grain_row(Grain(position, [20e-9, 30e-9, 20e-9], "q-S", type="BA", seed=4), 1e8)
+    short, middle, long = (row[f"axis_{axis}"].item() for axis in "abc")
+    assert short == pytest.approx(middle) and long > 2 * middle
+    assert row["mean_monomer_radius"].item() == pytest.approx(70e-9 / 3)
+    assert row["enclosing_radius"].item() == pytest.approx((99.8e-9 + 40e-9) / 2, rel=1e-6)
 
 
 @pytest.mark.parametrize("compression", [-0.09, 0.0, 1.0, 2.9])

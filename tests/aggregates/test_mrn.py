@@ -8,6 +8,7 @@ from ratd.aggregates import mrn as module
 from ratd.aggregates.mrn import (
     LARGEST,
     SMALLEST,
+    free_samples,
     moment_of_length,
     mrn,
     mrn_length,
@@ -39,6 +40,11 @@ def test_a_free_sample_follows_the_law():
     radii = mrn(20_000, 3, mass_within=None, length_within=None)
     assert kstest(radii, lambda r: 1.0 - part_above(r)).pvalue > 0.01
     assert (np.diff(radii) <= 0.0).all() and radii[-1] >= SMALLEST and radii[0] <= LARGEST
+
+
+def test_free_samples_differ():
+    one, other = free_samples(50, 2)
+    assert not np.array_equal(one, other)
 
 
 def test_a_sample_is_near_to_the_law():

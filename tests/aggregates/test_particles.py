@@ -83,6 +83,10 @@ def dump(style, columns, rows):
         ("a.xyz", "\ufeff2\nProperties=pos:R:3:r:R:1 unit=µm\n0 0 0 0.02\n0 0 0.04 0.02\n"),
         ("a.dump", dump("real", "id radius x y z xu yu zu", "1 200 1 1 1 0 0 0\n2 200 1 1 1 0 0 400\n")),
         ("a.dump", dump("nano", "id radius x y z", "1 20 0 0 0\n2 20 0 0 40\n")),
+        ("a.dump", dump("metal", "id radius x y z", "1 200 0 0 0\n2 200 0 0 400\n")),
+        ("a.dump", dump("micro", "id radius x y z", "1 0.02 0 0 0\n2 0.02 0 0 0.04\n")),
+        ("a.dump", dump("cgs", "id radius x y z", "1 2e-6 0 0 0\n2 2e-6 0 0 4e-6\n")),
+        ("a.dump", dump("si", "id radius x y z", "1 2e-8 0 0 0\n2 2e-8 0 0 4e-8\n")),
         (
             "a.dump",
             "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
@@ -95,6 +99,13 @@ def test_files_as_others_write_them(tmp_path, name, text):
     read = read_particles(tmp_path / name)
     np.testing.assert_allclose(read.position, [[0, 0, 0], [0, 0, 40e-9]])
     np.testing.assert_allclose(read.radius, 20e-9)
+
+
+def test_edges_of_the_box_of_a_dump_are_between_its_bounds(tmp_path):
+    text = dump("nano", "id radius x y z", "1 20 0 0 0\n2 20 0 0 40\n")
+    bounds = "pp pp pp\n-100 200\n0 400\n50 550\n"
+    (tmp_path / "a.dump").write_text(text.replace("ff ff ff\n0 1\n0 1\n0 1\n", bounds))
+    np.testing.assert_allclose(read_particles(tmp_path / "a.dump").box, BOX)
 
 
 @pytest.mark.parametrize(
@@ -194,6 +205,14 @@ def test_a_dump_in_units_without_a_length_needs_one(tmp_path):
     assert read_particles(path, unit="nm").radius == pytest.approx(20e-9)
 
 
+def test_radii_that_seem_to_be_in_another_unit_than_nm_need_one(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("0 0 0 0.2\n0 0 0.4 0.2\n")
+    with pytest.raises(InputError, match="states no unit.* which is um in all likelihood"):
+        read_particles(path)
+    assert read_particles(path, unit="nm").radius == pytest.approx(0.2e-9)
+
+
 def test_wrong_arguments(tmp_path, grain):
     write_particles(grain, tmp_path / "a.txt")
     write_particles(grain, tmp_path / "a.xyz", unit="um")
@@ -242,6 +261,12 @@ def test_the_end_of_an_evolution_is_written_with_its_box(tmp_path, grain):
     back = read_particles(tmp_path / "end.xyz")
     np.testing.assert_allclose(back.position, run["position"], rtol=1e-10, atol=1e-20)
     np.testing.assert_allclose(back.box, 1e-6)
+
+
+def test_the_end_of_an_evolution_in_open_space_has_no_box(tmp_path, grain):
+    run = ratd.evolve(grain.position, grain.radius, duration=1e-12, records=1)
+    write_particles(run, tmp_path / "end.xyz")
+    assert 'pbc="F F F"' in (tmp_path / "end.xyz").read_text() and read_particles(tmp_path / "end.xyz").box is None
 
 
 @pytest.mark.parametrize("suffix", ["xyz", "dump"])

@@ -9,10 +9,12 @@ from ratd.aggregates.strength import (
     compressive_strength_kataoka2013,
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
+    midplane_tension,
     power_kataoka2013,
     power_tatsuuma2023,
     rolling_pressure,
     sound_speed_kataoka2013,
+    tensile_strength_tatsuuma2019,
 )
 
 ICE, SILICATE = ratd.MATERIALS["ice"], ratd.MATERIALS["silicate"]
@@ -36,6 +38,18 @@ def test_p_0_is_that_of_the_paper():
     assert compressive_strength_tatsuuma2023(0.24, silicate) == pytest.approx(295.0, rel=0.01)
     assert sound_speed_kataoka2013(1.0, ice, ICE.density) == pytest.approx(10.6, abs=0.05)
     assert sound_speed_kataoka2013(0.01, silicate, SILICATE.density) == pytest.approx(0.77e-2, rel=0.01)
+
+
+def test_the_tensile_strength_is_that_of_the_paper():
+    """9.51 kPa (phi/0.1)^1.8 for ice of 0.1 um, gamma = 0.1 J m-2."""
+    assert tensile_strength_tatsuuma2019(0.1, 1e-7, 0.1) == pytest.approx(9.51e3, rel=1e-3)
+    assert tensile_strength_tatsuuma2019(0.1, 1e-7, 0.2) == pytest.approx(9.51e3 * 2**1.8, rel=1e-3)
+
+
+def test_the_tension_is_the_pull_of_half_of_a_porous_sphere():
+    """Of 2/3 pi rho phi a^3, whose centre of mass is 3/8 a from the axis, over pi a^2."""
+    pull = 2 / 3 * np.pi * 3000.0 * 0.5 * 1e-18 * 3 / 8 * 1e-6 * 1e8**2
+    assert midplane_tension(1e8, 3000.0, 0.5, 1e-6) == pytest.approx(pull / (np.pi * 1e-12))
 
 
 def test_the_laws_agree_at_low_filling_factors():

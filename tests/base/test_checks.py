@@ -1,4 +1,4 @@
-"""What counts as a number, an array of numbers, and a grain of dust."""
+"""What counts as a number, an array of numbers, and a grain of dust; how many of them there are in words."""
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ import ratd
 from files import make_grain
 from ratd.base.checks import GREATEST_SEED, check_radii, is_number, is_whole, number_array, whole_number
 from ratd.base.errors import InputError
+from ratd.base.words import plural
 
 
 @pytest.mark.parametrize("value", [1, 1.5, np.float64(1), np.float32(1), np.int64(3), np.uint8(3)])
@@ -24,6 +25,10 @@ def test_whole_numbers_may_be_written_with_an_exponent():
     for value in (0, 1.5, "3", True, np.nan, 10**400):
         with pytest.raises(InputError, match="records is .*; it must be a whole number of at least 1"):
             whole_number(value, "records", 1)
+
+
+def test_the_least_number_that_is_named_is_allowed():
+    assert whole_number(1, "records", 1) == 1
 
 
 @pytest.mark.parametrize("values", [["1", "2"], [1j, 2], np.array([1 + 0j]), [True, False], [[1], [1, 2]], [None], "1"])
@@ -76,3 +81,7 @@ def test_a_material_of_numpy_numbers_is_that_of_plain_ones():
 def test_growth_takes_no_text_and_bounds_its_seed(name, value):
     with pytest.raises(InputError, match=f"{name} is"):
         ratd.grow(**{"type": "BA", "a_eff": 60e-9, "material": "q-S", "seed": 0} | {name: value})
+
+
+def test_one_alone_is_no_plural():
+    assert [plural(n, "grain") for n in (0, 1, 2)] == ["0 grains", "1 grain", "2 grains"]

@@ -128,6 +128,21 @@ def test_error_of_a_slope_is_the_scatter_between_ensembles(counts):
     assert 0.9 < error / scatter < 1.5  # HC3 errs to the safe side with few points
 
 
+def test_the_error_of_a_slope_needs_three_points_that_tell_of_it():
+    assert np.isnan(slope_error(np.array([0.1, 0.2, 0.0])))
+    assert slope_error(np.array([0.1, 0.2, 0.2])) == pytest.approx(0.3)
+
+
+def test_the_sixteenth_and_the_eighty_fourth_part_are_told():
+    found = median_of(np.arange(101.0))
+    assert (found["low"], found["median"], found["high"]) == pytest.approx((16.0, 50.0, 84.0))
+
+
+def test_the_error_of_the_median_needs_three_groups():
+    assert np.isnan(median_of([1.0, 2.0, 3.0, 4.0], group=[0, 0, 1, 1])["error"])
+    assert np.isfinite(median_of([1.0, 2.0, 3.0, 4.0], group=[0, 0, 1, 2])["error"])
+
+
 @pytest.mark.parametrize("weighted", [False, True])
 def test_the_error_of_the_median_is_that_of_the_medians_of_drawn_samples(weighted):
     """The slow way: each sample written out, group by group."""

@@ -1,6 +1,7 @@
 """`evolve` as a user meets it: what is refused, what comes back, in which order, after a kill, and free bodies."""
 
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import xarray as xr
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine import checkpoint as checkpoints
-from ratd.engine.layout import CONTACTS
+from ratd.engine.layout import CONTACTS, DT, FASTEST, SCALARS
 from ratd.experiments import evolve as module
 from ratd.experiments import intervals
 from ratd.experiments.evolve import RECORDS, evolve
@@ -353,6 +354,26 @@ def test_spheres_that_may_pass_through_each_other_are_warned_of():
     fast = {"position": [[0, 0, 0], [42e-9, 0, 0]], "radius": [20e-9] * 2, "velocity": [[5.0, 0, 0], [-5.0, 0, 0]]}
     with pytest.warns(UserWarning, match="meet at 10 m/s come nearer by 1e-07 m in a step of 1e-08 s"):
         evolve(**fast, duration=2e-8, timestep=1e-8)
+
+
+def test_spheres_that_fly_at_each_other_meet_however_fast():
+    """The first step too is so short that none moves by more than a part of its radius."""
+    fast = {"position": [[0, 0, 0], [0, 0, 2.5 * A]], "radius": [A, A], "velocity": [[0, 0, 1e4], [0, 0, -1e4]]}
+    run = evolve(**fast, material="q-S", duration=0.01 * A / 1e4, records=1, balance=None)
+    assert run["position"][0, 2].item() == pytest.approx(0.125 * A, rel=1e-6)
+    run = evolve(**fast, material="q-S", duration=0.4 * A / 1e4, records=8, balance=None)
+    assert run["n_contacts"].values.max() == 1
+
+
+def test_a_run_that_has_blown_up_ends_before_its_next_record():
+    """Its balance is looked at only there, and its steps become so short that it would never come to it."""
+    state = SimpleNamespace(scalar=np.zeros(len(SCALARS)))
+    state.scalar[DT], state.scalar[FASTEST] = 2e-15, 1e9
+    module._check_pace(state, 1e-12)
+    with pytest.raises(
+        RuntimeError, match=r"moves at 1e\+09 m/s, .* 1e-11 s at the start, is down to 2e-15 s: the run has"
+    ):
+        module._check_pace(state, 1e-11)
 
 
 def test_pieces_are_numbered_by_their_mass():

@@ -9,6 +9,7 @@ import ratd
 from ratd.aggregates.grain import Grain, gaps, pressed, seated
 from ratd.base.errors import InputError
 from ratd.engine.layout import CONTACTS, LARGEST_MONOMERS
+from ratd.engine.state import positions_as_given
 from ratd.experiments import relax as relaxation
 from ratd.experiments.relax import relax
 
@@ -91,3 +92,11 @@ def test_touching_spheres_of_very_unequal_radii_come_to_rest():
     np.testing.assert_allclose(gaps_of(seated(wide).position, wide), -1.0, rtol=1e-6)
     for law in (ratd.laws.jkr(), ratd.laws.dmt()):
         assert relax(wide, law=law).counter[LARGEST_MONOMERS] == 60
+
+
+def test_a_grain_far_from_the_origin_comes_to_rest_as_one_near_it():
+    """A metre away a contact has five digits left, too few to find rest."""
+    grain = ratd.grow("BA", a_eff=60e-9, material="q-S", seed=2)
+    near, far = relax(grain), relax(grain.replace(position=grain.position + 1.0))
+    shift = positions_as_given(far) - positions_as_given(near)
+    assert np.abs(shift - shift.mean(axis=0)).max() < 1e-12

@@ -152,6 +152,14 @@ def test_long_grains_have_a_piece_each(tmp_path, monkeypatch):
     assert len(list(partial.partial_folder(target).glob("*.nc"))) == 3
 
 
+def test_grains_stand_in_the_order_of_their_seeds_and_not_of_the_names_of_pieces(tmp_path, monkeypatch):
+    """As text 10 comes before 9."""
+    monkeypatch.setattr(partial, "WORK_BETWEEN_PIECES", 0)
+    target, seeds = tmp_path / "seeds_9-11.nc", [9, 10, 11]
+    run_block(tmp_path, target, seeds=seeds)
+    assert [grain.seed for grain in grain_files.read_grains(target)] == seeds
+
+
 def test_bad_input_ends_with_one_sentence(tmp_path, capsys):
     with pytest.raises(SystemExit) as end, jobs.Job(make_job(tmp_path)):
         raise InputError("size is -1; allowed: above 0")
@@ -306,11 +314,12 @@ def test_locks_of_a_killed_snakemake_are_removed_and_those_of_a_live_one_are_not
 
 
 def test_tidy_leaves_what_it_did_not_make(tmp_path):
-    for name in ("film.mp4", "notes.nc", "data.nc"):
+    # the last of them with a name as of its own, but no lock
+    for name in ("film.mp4", "notes.nc", "data.nc", "others.nc"):
         (tmp_path / name).write_text("")
         folder = partial.partial_folder(tmp_path / name)
         folder.mkdir()
-        (folder / "frame_0.png").write_text("")
+        (folder / ("seed_0.nc" if name == "others.nc" else "frame_0.png")).write_text("")
     (partial.partial_folder(tmp_path / "notes.nc") / "lock").write_text("")
     before = sorted(tmp_path.rglob("*"))
     partial.tidy(tmp_path)
@@ -328,6 +337,13 @@ def test_the_first_error_of_a_run_is_kept(tmp_path):
     assert first_error.kept(place) == "the first, in two lines, 100 µm" and place.stat().st_size == size
     first_error.begin(place)
     assert first_error.kept(place) == ""
+
+
+def test_an_error_that_is_too_long_fills_the_room_and_no_more(tmp_path):
+    place = tmp_path / "ratd.first_error"
+    first_error.begin(place)
+    first_error.keep("µ" * 3000, place)
+    assert place.stat().st_size == first_error.ROOM and set(first_error.kept(place)) == {"µ"}
 
 
 def test_a_failed_job_keeps_its_error(tmp_path, monkeypatch):

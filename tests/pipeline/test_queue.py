@@ -7,7 +7,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from ratd.pipeline.queue import Task, command, key, state, work
+from files import make_grain
+from ratd.aggregates.files import grain_row
+from ratd.base.materials import MATERIALS
+from ratd.pipeline import queue
+from ratd.pipeline.queue import Table, Task, command, key, state, work
+
+MODULE = SimpleNamespace(__spec__=SimpleNamespace(name="none"), __doc__="Nothing.")
 
 
 class Kept:
@@ -55,14 +61,39 @@ def test_an_error_of_the_program_ends_the_queue_and_nothing_is_lost():
     assert table.rows == [key(0)] and table.written == 1
 
 
-def test_no_row_is_begun_when_the_time_is_up():
+def divides():
+    return 1 / 0
+
+
+def late(number):
+    time.sleep(0.3)
+    return row(number)
+
+
+def test_an_error_in_one_process_keeps_what_another_is_at_work_on():
+    table = Kept()
+    tasks = [Task(table, key(0), partial(late, 0)), Task(table, key(1), divides), Task(table, key(2), partial(row, 2))]
+    with pytest.raises(ZeroDivisionError):
+        work(tasks, say=lambda text: None, processes=2)
+    assert table.rows[:1] == [key(0)] and table.written == 1
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_no_row_is_begun_when_the_time_is_up(processes):
     table = Kept()
     tasks = [Task(table, key(number), partial(row, number)) for number in range(3)]
-    assert work(tasks, until=time.monotonic() - 1.0, say=lambda text: None, processes=2) == 3 and not table.rows
+    over = time.monotonic() - 1.0
+    assert work(tasks, until=over, say=lambda text: None, processes=processes) == 3 and not table.rows
 
 
 def test_keys_that_differ_by_rounding_are_the_same():
     assert key(0.1 + 0.2, 3) == key(0.3, 3.0) != key(0.3, 4)
+
+
+def test_keys_of_near_numbers_differ():
+    assert key(12345) != key(12346) and key(350e-9) != key(350.001e-9)
+    # seeds have more digits than a float that is rounded
+    assert key(3e-7, 2147483640) != key(3e-7, 2147483641)
 
 
 def test_a_table_that_gets_no_row_any_more_is_still_written():
@@ -84,6 +115,35 @@ def test_a_command_that_waited_reads_what_the_other_one_left(tmp_path):
         held.append(folder)
         return []
 
-    module = SimpleNamespace(__spec__=SimpleNamespace(name="none"), __doc__="Nothing.")
     how = {"config": (), "data": "data", "load": lambda: SimpleNamespace(results=tmp_path), "tasks": tasks}
-    assert command([], module=module, what="rows", **how) == 0 and held == ["data"]
+    assert command([], module=MODULE, what="rows", **how) == 0 and held == ["data"]
+
+
+def test_a_command_tells_of_what_is_left_and_takes_minutes_and_processes(tmp_path, monkeypatch, capsys):
+    seen = {}
+
+    def leave_all(wanted, *, until, say, processes):
+        seen.update(until=until, processes=processes)
+        return len(wanted)
+
+    monkeypatch.setattr(queue, "work", leave_all)
+    monkeypatch.setattr(queue.time, "monotonic", lambda: 1000.0)
+    how = {"module": MODULE, "what": "rows", "config": (), "data": "data"}
+    how["load"] = lambda: SimpleNamespace(results=tmp_path)
+    assert command(["--minutes", "2", "--processes", "3"], tasks=lambda plan, folder: [1], **how) == 3
+    assert seen == {"until": 1120.0, "processes": 3}
+    assert command([], tasks=lambda plan, folder: [], **how) == 0 and seen == {"until": None, "processes": 1}
+    with pytest.raises(SystemExit):
+        command(["--processes", "0"], tasks=lambda plan, folder: [], **how)
+    assert "--processes: '0'; allowed: a whole number of at least 1" in capsys.readouterr().err
+
+
+def test_rows_that_come_soon_after_each_other_are_written_together(monkeypatch):
+    now, written = [0.0], []
+    monkeypatch.setattr(queue.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(queue.io, "write", lambda path, block, kind: written.append((now[0], block.sizes["row"])))
+    table = Table("none.nc", "grains", ("seed",), MATERIALS["q-S"], {})
+    for seed, now[0] in enumerate((1.0, 10.0, 20.0, 22.0, 42.0, 43.0)):
+        table.add(grain_row(make_grain(seed), 1e8))
+        table.write_if_due()
+    assert written == [(1.0, 1), (22.0, 4), (43.0, 6)]

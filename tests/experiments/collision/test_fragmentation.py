@@ -97,6 +97,13 @@ def test_columns_of_datasets_are_numbers():
         fragmentation_velocity(falls, samples=0)
 
 
+def test_one_collision_a_velocity_has_no_error():
+    found = fragmentation_velocity(pd.DataFrame({"velocity": [1.0, 2.0, 3.0], "X": [1.0, 0.5, 0.0]}))
+    assert found["velocity"] == pytest.approx(2.7) and np.isnan(found[["error", "low", "high"]].to_numpy(float)).all()
+    with pytest.raises(InputError, match="velocity of the row 1 is -3; it must be a number above 0"):
+        fragmentation_velocity(pd.DataFrame({"velocity": [1.0, -3.0], "X": [1.0, 0.0]}))
+
+
 def test_a_velocity_without_a_value_is_passed_over():
     table = pd.DataFrame({"velocity": [1.0, 2.0, 3.0] * 4, "X": [1.0, np.nan, 0.0] * 4})
     assert 1.0 < fragmentation_velocity(table)["velocity"] < 3.0

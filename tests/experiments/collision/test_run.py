@@ -102,6 +102,7 @@ def test_built_clusters_are_at_rest_and_others_come_to_rest():
         ({"seed": -1}, "seed is -1"),
         ({"relaxed": "no"}, "relaxed is 'no'; it must be True or False"),
         ({"gap": -1e-9}, "gap is -1e-09; .* may not overlap"),
+        ({"gap": 1.0}, "gap is 1 m; the clusters are .* m wide, and it must be at most 100 times as much"),
         ({"timestep": 1e-9}, r"timestep is 1e-09 s; the smallest sphere, 3e-07 m, allows at most \d"),
         ({"b": "cluster"}, "b is of type str; it must be a ratd.Grain"),
         ({"b": ratd.build_cluster([1e-7] * 3, 1e-6, "q-S")}, "are of 'silica' and of 'q-S'; they must be of one"),

@@ -10,7 +10,7 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
-from ratd.experiments.spin_up.cells import cell_statistics, sort_cells
+from ratd.experiments.spin_up.cells import cell_of, cell_statistics, size_key, sort_cells
 from ratd.experiments.spin_up.eq33 import (
     TABLE_3,
     eq33,
@@ -97,6 +97,8 @@ def test_grain_table_of_marks_alone_uses_the_grain_at_rest():
     assert table.loc[0, "n_monomers"] == run.attrs["initial_n_monomers"]
     assert table.loc[0, "filling_factor"] == 1 - run.attrs["initial_porosity"]
     assert np.isnan(table.loc[0, "fractal_dimension"])
+    assert [table.loc[0, f"axis_{axis}"] for axis in "abc"] == [run.attrs[f"initial_axis_{axis}"] for axis in "abc"]
+    assert table.loc[0, "porosity"] == run.attrs["initial_porosity"]
 
 
 def test_grain_table_reads_a_grain():
@@ -109,6 +111,10 @@ def test_grain_table_reads_a_grain():
     assert row["mean_monomer_radius"] == pytest.approx(70e-9 / 3)
     assert row["a_eff"] == pytest.approx(np.cbrt(np.sum(radius**3)))
     assert row["porosity"] == grain.shape.porosity and row["filling_factor"] == 1 - grain.shape.porosity
+    assert row["axis_a"] == pytest.approx(row["axis_b"]) and row["axis_c"] > 2 * row["axis_b"]
+    assert row["enclosing_radius"] == pytest.approx((99.8e-9 + 40e-9) / 2, rel=1e-6)
+    own, orbit = (np.sum(radius**3 * part) for part in (0.4 * radius**2, (z - 49.9e-9) ** 2))
+    assert row["spin_share"] == pytest.approx(own / (own + orbit), rel=1e-6)
 
 
 def test_grain_table_takes_every_form_of_rows(table):
@@ -131,6 +137,7 @@ def test_sizes_are_told_apart_to_the_picometre():
     marks = [disruption(make_run(1e8, a_eff=350e-9))]
     table = grain_table([grown(a_eff=350 * 1e-9)], marks)
     assert table["omega_disr"].notna().all()
+    assert size_key(pd.Series([199.9999999e-9, 2e-7, 200.0000001e-9])).tolist() == [200000] * 3
 
 
 def test_rows_stand_in_the_order_of_the_paper(table):
@@ -176,6 +183,12 @@ def test_cell_statistics_against_plain_loops(table):
         assert cell["omega_disr_count"] == len(values)
         assert cell["omega_disr_mean"] == pytest.approx(sum(values) / len(values), rel=1e-12)
         assert (cell["omega_disr_minimum"], cell["omega_disr_maximum"]) == (min(values), max(values))
+
+
+def test_every_material_type_and_size_is_a_cell(table):
+    cell = pd.Series(cell_of(table), table.index)
+    names = table[["material", "type", "a_eff"]].apply(tuple, axis=1)
+    assert cell.nunique() == 27 and names.groupby(cell).nunique().eq(1).all()
 
 
 def test_cells_may_pool_the_materials(table):
@@ -275,6 +288,16 @@ def test_intervals_hold_the_truth_as_often_as_they_say_with_few_large_grains():
         found = fit_ensemble(made, "own", n_bootstrap=200, confidence=0.8, seed=seed).squeeze()
         inside += float(found["alpha_low"]) < float(exact["alpha"]) < float(found["alpha_high"])
     assert 65 <= inside <= 95
+
+
+def test_intervals_are_about_the_fit_with_few_large_grains():
+    full = make_table(materials=("q-S",), types=("BA",), seeds=20, scatter=0.0)
+    rows = full[(full["a_eff"] < 1.2e-7) | (full["seed"] < 2)]
+    # omega that is no law of Eq. 33: the weights move the line
+    rows = rows.assign(omega_disr=rows["omega_disr"] * np.where(rows["a_eff"] > 2e-7, 3.0, 1.0))
+    found = fit_ensemble(rows, "own", n_bootstrap=400, confidence=0.9).squeeze()
+    for name in ("A", "alpha"):
+        assert float(found[f"{name}_low"]) < float(found[name]) < float(found[f"{name}_high"])
 
 
 def test_fit_repeats_to_the_last_bit_whatever_the_order(table, fit):

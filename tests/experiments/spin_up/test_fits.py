@@ -16,7 +16,7 @@ from ratd.experiments.spin_up.eq33 import (
     radius_of_reading,
 )
 from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, fragment_shares, power_law
-from ratd.experiments.spin_up.oblateness import oblate_change, oblate_counts
+from ratd.experiments.spin_up.oblateness import is_oblate, oblate_change, oblate_counts, oblate_share
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, slopes
 from synthetic_runs import make_fragments, make_table
 
@@ -60,6 +60,27 @@ def test_what_was_left_out_has_no_part_in_its_prediction():
     assert found["scatter"] == pytest.approx(np.log(10) * np.sqrt(1 / 8 + 7 / 8 / 7**2), rel=1e-9)
 
 
+def test_what_is_predicted_by_one_constant_counts_all_sizes_alike():
+    """omega over the bound: 1 for twenty grains of one size, e and e^2 for two each of the others."""
+    table = make_table(materials=["q-S"], types=["BAM2"], sizes=(1e-7, 2e-7, 4e-7), seeds=20)
+    table = table[(table["a_eff"] < 1.5e-7) | (table["seed"] < 2)].reset_index(drop=True)
+    level = table["a_eff"].map({1e-7: 0.0, 2e-7: 1.0, 4e-7: 2.0})
+    table["cut_bound"] = table["omega_disr"] / np.exp(level)
+    found = scatter_of(cross_validation(table), "BAM2", "cut bound")
+    # seen from the mean of the other two: -1.5, 0, 1.5
+    assert found["scatter"] == pytest.approx(1.5 * np.sqrt(2 / 3), rel=1e-9)
+
+
+def test_predictions_do_not_hang_on_how_many_grains_each_size_has():
+    """omega that is no power of N phi and the same for all grains of a size, seen with all and with fewer of them."""
+    table = make_table(materials=["q-S"], types=["BAM2"], sizes=(1e-7, 2e-7, 3e-7, 4e-7), seeds=6)
+    for _, here in table.groupby("a_eff").groups.items():
+        for name in ("n_contacts", "n_monomers", "filling_factor", "mean_monomer_radius", "omega_disr", "cut_bound"):
+            table.loc[here, name] = table.loc[here[0], name]
+    fewer = table[(table["seed"] == 0) | (table["a_eff"] < 1.5e-7)].reset_index(drop=True)
+    np.testing.assert_allclose(cross_validation(fewer)["scatter"], cross_validation(table)["scatter"], rtol=1e-9)
+
+
 def test_a_grain_that_one_predictor_cannot_predict_counts_for_none(table):
     lone = table[(table["material"] == "q-S") & (table["type"] == "BA")].iloc[:1].assign(material="a-C", a_eff=1e-6)
     here = pd.concat([table[table["material"] == "q-S"], lone], ignore_index=True)
@@ -89,6 +110,24 @@ def test_errors_of_the_law_of_size_are_the_scatter_between_ensembles():
     for name in ("C", "p"):
         assert found[f"{name}_error"].mean() == pytest.approx(found[name].std(), rel=0.3)
     assert found["scatter"].mean() == pytest.approx(0.2, rel=0.05) and found["p"].mean() == pytest.approx(1.5, abs=0.02)
+
+
+def test_errors_of_the_law_of_size_hold_with_few_large_grains():
+    rng, table = np.random.default_rng(5), make_table(materials=["q-S"], types=["BAM2"], sizes=SIZES, seeds=12)
+    table = table[(table["a_eff"] < 160e-9) | (table["seed"] < 2)]
+    line = 1e8 * (table["a_eff"] / 300e-9) ** -1.5
+    found = pd.concat(size_law(table.assign(omega_disr=line * rng.lognormal(0, 0.2, len(table)))) for _ in range(60))
+    for name in ("C", "p"):
+        assert found[f"{name}_error"].mean() == pytest.approx(found[name].std(), rel=0.25)
+
+
+def test_the_scatter_about_the_law_of_size_counts_all_sizes_alike():
+    """None of eight small grains, 0.3 of two large ones: half of 0.09 in the mean of both sizes."""
+    table = make_table(materials=["q-S"], types=["BAM2"], sizes=(1e-7, 3e-7), seeds=8)
+    table = table[(table["a_eff"] < 2e-7) | (table["seed"] < 2)].reset_index(drop=True)
+    off = np.where(table["a_eff"] > 2e-7, np.where(table["seed"] == 0, 0.3, -0.3), 0.0)
+    law = size_law(table.assign(omega_disr=table["a_eff"] ** -1.5 * np.exp(off)))
+    assert law["scatter"].item() == pytest.approx(0.3 / np.sqrt(2))
 
 
 def curved_table(bends, seeds=4):
@@ -193,6 +232,15 @@ def test_errors_of_slopes_are_the_scatter_between_ensembles():
         assert abs(made[name].mean() - {"below": -1.0, "above": 0.0, "change": 1.0}[name]) < 4 * scatter / np.sqrt(200)
 
 
+def test_grains_at_the_split_count_twice_in_the_error_of_the_change():
+    """If they alone scatter: one that lies high raises the slope below and lowers that above."""
+    table = power_table(-1.0, -1.0, noise=0.0)
+    split = np.isclose(table["a_eff"], 300e-9)
+    table.loc[split, "omega_disr"] *= np.exp(np.where(table.loc[split, "seed"] % 2, -0.1, 0.1))
+    row = slopes(table).iloc[0]
+    assert row["change_error"] == pytest.approx(row["below_error"] + row["above_error"], rel=1e-6)
+
+
 def test_a_slope_does_not_hang_on_how_many_grains_each_size_has():
     """omega that is not a power of size, seen with all grains and with fewer of the large ones."""
     table = power_table(-1.0, -1.0, noise=0.0)
@@ -215,6 +263,22 @@ def test_a_side_without_an_error_leaves_the_change_without_one():
     assert np.isnan(found["above_error"]) and np.isnan(found["change_error"])
 
 
+def test_a_grain_is_oblate_where_b_over_a_is_above_c_over_b():
+    # b is below the middle of a and c and yet above their geometric mean, or below both
+    assert is_oblate(1.0, 1.5, 2.2) and not is_oblate(1.0, 1.5, 2.4)
+    assert is_oblate(1.0, 1.45, 2.0) and not is_oblate(1.0, 1.45, 2.15)
+
+
+def test_the_share_of_oblate_grains_is_of_known_shapes_and_counts_all_sizes_alike():
+    """Three oblate grains of one size, one of another that is not, and two whose shape is not known."""
+    oblate, prolate, unknown = (1.0, 2.0, 2.1), (1.0, 1.1, 2.0), (np.nan, np.nan, np.nan)
+    axes = [oblate, oblate, oblate, prolate, unknown, (0.0, 1.0, 1.0)]
+    table = pd.DataFrame(axes, columns=[f"axis_{axis}_start" for axis in "abc"])
+    table = table.assign(material="q-S", type="BA", a_eff=[1e-7] * 3 + [2e-7] + [1e-7] * 2)
+    share, _, n_oblate, n = oblate_share(table, "start")
+    assert (share, n_oblate, n) == (0.5, 3, 4)
+
+
 def test_oblate_grains_are_counted_at_both_times():
     axes = {"axis_a_start": [1, 1, 1], "axis_b_start": [2.0, 1.1, 1.5], "axis_c_start": [2.1, 2.0, np.nan]}
     axes |= {"axis_a_disr": [1, 1, 1], "axis_b_disr": [2.0, 3.0, 2.0], "axis_c_disr": [2.1, 3.1, 2.2]}
@@ -232,6 +296,9 @@ def test_what_the_share_of_oblate_grains_gains_is_counted_grain_by_grain():
     change, error = oblate_change(table)
     assert change == pytest.approx(0.25) and error == pytest.approx(np.std([1, 0, 0, 0], ddof=1) / 2)
     assert oblate_change(table[1:4]) == (0.0, 0.0)
+    # all of one size gain, none of the other: sizes count alike, and by how much they differ is no error
+    apart = table.iloc[[0, 0, 0, 1, 1]].assign(a_eff=[1e-7] * 3 + [2e-7] * 2)
+    assert oblate_change(apart) == (0.5, 0.0)
 
 
 def test_shares_of_fragments():
@@ -255,6 +322,20 @@ def test_shares_of_fragments():
     own = fragment_shares(fragments.assign(weight=[0.5, 0.5, 0.5, 1.5, 1.5]), "half").set_index("class")
     assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.425, 0.05, 0.375, 0.15])
     assert own["number_share"].tolist() == pytest.approx([2 / 4.5, 0.5 / 4.5, 1.5 / 4.5, 0.5 / 4.5])
+
+
+def test_classes_of_monomers_begin_where_their_names_say():
+    fragments = pd.DataFrame({"fragment_n_monomers": [1, 2, 3, 4, 10, 11], "type": "BA", "grain": 0})
+    own = fragment_shares(fragments.assign(mass_fraction=0.1, weight=1.0, half=True), "half").set_index("class")
+    assert own.loc[list(MONOMER_CLASSES), "number_share"].tolist() == pytest.approx([1 / 6, 2 / 6, 2 / 6, 1 / 6])
+
+
+def test_error_of_a_share_of_lone_fragments_is_binomial():
+    """Of 200 grains that lose one fragment each 60 lose a monomer."""
+    fragments = pd.DataFrame({"fragment_n_monomers": np.repeat([1, 3], [60, 140]), "type": "BA"})
+    fragments = fragments.assign(grain=np.arange(200), mass_fraction=0.1, weight=1.0, half=True)
+    own = fragment_shares(fragments, "half").set_index("class").loc[MONOMER_CLASSES[0]]
+    assert own["number_share_error"] == pytest.approx(np.sqrt(0.3 * 0.7 / 200), rel=0.1)
 
 
 @pytest.mark.parametrize("exponent", [1.5, 2.5])
@@ -328,3 +409,20 @@ def test_large_pieces_are_counted_by_the_grain():
     assert found["BA", "50 to 150 nm"] == 1.0 and found["BAM2", "400 to 550 nm"] == 2.0
     one = exponents(table[table["grain"] == 3], replicates=2).iloc[0]
     assert np.isnan(one["low"]) and np.isnan(one["large_pieces_error"]) and one["large_pieces"] == 2
+
+
+def test_numbers_that_occur_alike_have_the_exponent_0():
+    """Each from 1 to one less than the grain has, once."""
+    table = pd.DataFrame({"fragment_n_monomers": np.tile(np.arange(1, 12), 2), "grain": np.repeat([0, 1], 11)})
+    table = table.assign(type="BA", a_eff=1e-7, n_monomers=12, mass_fraction=0.01, half=True)
+    assert exponents(table, replicates=5)["exponent"].item() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_intervals_of_exponents_are_of_grains_and_not_of_fragments():
+    """A grain that loses the same piece three times tells no more than one that loses it once."""
+    rng = np.random.default_rng(2)
+    once = pd.DataFrame({"type": "BA", "a_eff": 1e-7, "grain": np.arange(30), "n_monomers": 50})
+    once = once.assign(fragment_n_monomers=rng.integers(1, 20, 30), mass_fraction=0.01, half=True)
+    thrice = once.loc[once.index.repeat(3)]
+    one, other = (exponents(table, replicates=50).iloc[0][["low", "high"]].tolist() for table in (once, thrice))
+    assert other == pytest.approx(one, rel=1e-6)

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from ratd.base.errors import InputError
-from ratd.experiments.spin_up.marks import MARKS, VARIABLES, disruption, running_median
+from ratd.experiments.spin_up.marks import MARKS, VARIABLES, _half_width, before_marks, disruption, running_median
 from synthetic_runs import make_run
 
 BREAK = 1e8
@@ -62,6 +62,25 @@ def test_peak_in_the_last_record_before_an_abrupt_collapse():
     last_whole = run["omega"].values[np.flatnonzero(run["mass"].values > 0.9 * run.attrs["initial_mass"])[-1]]
     assert float(mark["omega_disr"]) == last_whole
     assert float(mark["mass_fraction_disr"]) == 1
+
+
+def test_the_stress_of_the_peak_is_that_of_its_record():
+    run = make_run(BREAK, steps=[(BREAK, 0.3), (2 * BREAK, 0.01)], gain=0)
+    whole = run["omega"].values < BREAK
+    assert float(disruption(run)["stress_peak"]) == run["total_stress"].values[whole].max()
+
+
+def test_the_peak_is_uncertain_by_the_farther_end_of_its_window():
+    # the second record of a window of five: it begins before the first one, at rest
+    assert _half_width(np.array([4.0, 5.0, 6.0, 7.0]), 1, 5) == 5.0
+    assert _half_width(np.array([1.0, 2.0, 3.0, 5.0, 9.0]), 2, 5) == 6.0
+    assert _half_width(np.array([1.0, 5.0, 6.0, 6.5, 7.0]), 2, 5) == 5.0
+
+
+def test_other_marks_are_uncertain_by_the_interval_before_their_record():
+    run = make_run(BREAK)
+    mark, omega = disruption(run), run["omega"].values
+    assert float(mark["omega_end_uncertainty"]) == omega[-1] - omega[-2]
 
 
 @pytest.mark.parametrize("period", [2.5, 7, 20])
@@ -175,6 +194,20 @@ def test_exactly_a_quarter_counts():
     assert in_record(mark, "omega_mass_75", BREAK)
 
 
+def test_exactly_three_quarters_of_the_contacts_count():
+    run = make_run(BREAK, steps=[(BREAK, 0.9), (2 * BREAK, 0.1)], gain=0, contacts=4, n_monomers=3)
+    omega = run["omega"].values
+    run["n_contacts"].values[:] = np.where(omega < BREAK, 4, np.where(omega < 2 * BREAK, 3, 1))
+    assert float(disruption(run)["omega_contacts_75"]) == omega[omega >= BREAK][0]
+
+
+def test_exactly_half_of_the_mass_is_still_the_grain():
+    run = make_run(BREAK, steps=[(BREAK, 0.5), (2 * BREAK, 0.1)], gain=0)
+    omega = run["omega"].values
+    run["total_stress"].values[:] = np.where(omega < 2 * BREAK, (omega / BREAK) ** 2, 0.05)
+    assert float(disruption(run)["omega_disr"]) == pytest.approx(2 * BREAK, rel=0.01)
+
+
 def test_rounding_is_no_loss():
     run = make_run(BREAK)
     run["mass"].values[:50] *= 1 - 1e-13
@@ -191,6 +224,11 @@ def test_contacts_count_from_their_start_and_not_from_their_peak():
     assert float(mark["omega_contacts_max"]) == pytest.approx(0.7 * BREAK, rel=0.02)
 
 
+def test_of_equal_numbers_of_contacts_the_first_is_their_maximum():
+    run = make_run(BREAK, gain=0)
+    assert float(disruption(run)["omega_contacts_max"]) == run["omega"].values[0]
+
+
 def test_shape_and_fragments_are_those_of_the_record_of_the_mark():
     run = make_run(BREAK, steps=[(0.6 * BREAK, 0.9), (BREAK, 0.3), (2 * BREAK, 0.01)])
     mark = disruption(run)
@@ -201,6 +239,22 @@ def test_shape_and_fragments_are_those_of_the_record_of_the_mark():
     assert float(mark["n_fragments_lost_disr"]) == run["n_fragments_lost"].values[k] == 5
     assert float(mark["n_contacts_disr"]) == run["n_contacts"].values[k]
     assert float(mark["mass_fraction_disr"]) == pytest.approx(0.9)
+
+
+def test_what_a_grain_was_before_a_mark_is_that_of_the_record_before():
+    run = xr.Dataset(
+        {
+            "omega": ("record", [1.0, 2.0, 3.0, 4.0]),
+            "angular_momentum": ("record", [10.0, 20.0, 30.0, 40.0]),
+            "axis_a": ("record", [1.0, 2.0, 1.0, 1.0]),
+            "axis_c": ("record", [3.0, 5.0, 9.0, 9.0]),
+            "steps_so_far": ("record", [5, 6, 7, 8]),
+        }
+    )
+    found = before_marks(run, xr.Dataset({"omega_first_loss": 3.0, "omega_mass_75": np.nan}))
+    names = ("angular_momentum", "axis_ratio", "steps")
+    assert [found[f"{name}_first_loss"] for name in names] == [20.0, 2.5, 6.0]
+    assert np.isnan([found[f"{name}_mass_75"] for name in names]).all()
 
 
 def test_undefined_axes_are_allowed():

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ratd.base.materials import MATERIALS
+from ratd.base.materials import MATERIALS, sphere_mass
 from ratd.experiments.spin_up.figures.figure10 import figure10, relative_error
 from ratd.experiments.spin_up.pairs import PAIR_COLUMNS, force_controlled_omega, holding_omega, pairs
 from ratd.pipeline import io
@@ -34,6 +34,13 @@ def test_holding_omega_of_a_load():
     assert holding_omega(8e-9, 1e-18, 2e-7) == pytest.approx(2e8)
     equal = force_controlled_omega(40e-9, 40e-9, MATERIALS["q-S"])
     assert equal > force_controlled_omega(40e-9, 80e-9, MATERIALS["q-S"]) > 0
+
+
+def test_a_speck_on_a_large_sphere_is_held_against_the_force_on_its_own_mass():
+    own, large, speck = MATERIALS["q-S"], 1e-6, 1e-9
+    expected = np.sqrt(3 * np.pi * own.surface_energy * speck / (sphere_mass(speck, own.density) * large))
+    assert force_controlled_omega(speck, large, own) == pytest.approx(expected, rel=2e-3)
+    assert force_controlled_omega(speck, large, own) == force_controlled_omega(large, speck, own)
 
 
 def test_pairs_can_be_written_and_read(table, tmp_path):

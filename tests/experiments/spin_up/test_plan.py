@@ -346,6 +346,21 @@ def test_later_entries_of_fewer_stand_over_earlier_ones():
     assert len(plan.seeds_of(("a-C", "BAM2", "550"), "literal")) == 1
 
 
+def test_fewer_seeds_of_drives_are_counted_from_the_first_seed():
+    fewer = [{"number": 2}, {"materials": ["q-S"], "drives": ["literal"], "number": 7}]
+    changes = {"seeds": {"first": 5, "number": 12, "fewer": fewer}, "block_size": 5, "snapshots": {"grains": []}}
+    figures = {"figure1": None, "figure5": None}
+    plan = with_changes(changes | {"small_grains": None, "drives": FEWER["drives"], "figures": figures})
+    cell = ("q-S", "BA", "100")
+    # the later entry stands over the earlier one also where it has more
+    assert plan.seeds_of(cell, "prescribed") == range(5, 7) and plan.seeds_of(cell, "literal") == range(5, 12)
+    # what is grown is the most that any drive wants
+    assert plan.seeds_of(cell) == range(5, 12) and plan.blocks(cell) == ["5-9", "10-11"]
+    assert plan.grown_block(cell, "5-6") == "5-9" and plan.grown_block(cell, "10-14") == "10-11"
+    # a grain that no drive wants is in the block of a cell with all seeds
+    assert plan.grown_block(cell, "15-16") == "15-16"
+
+
 def test_grains_are_grown_for_the_drive_that_wants_most_and_shared():
     plan = with_changes(FEWER)
     cell = ("q-S", "BA", "500")

@@ -42,6 +42,7 @@ from synthetic_runs import make_table
 
 HOT_STAR = Surroundings(hydrogen=10e6, temperature=100.0, anisotropy=1.0, wavelength=0.5e-6)
 """Where the printed prefactors hold as they are."""
+THIN_GAS = Surroundings(hydrogen=3e6, temperature=400.0)
 ERG = 1e-7
 YEAR = 365.25 * 86400.0
 
@@ -94,6 +95,12 @@ def test_infrared_damping_as_printed_and_from_absorption():
     assert 0.4 / infrared_coefficient(0.18, 16.4) == pytest.approx(2.2, abs=0.1)
     assert infrared_of("q-S") == infrared_of("co-S") == infrared_coefficient(0.18, 16.4)
     assert infrared_of("a-C") == infrared_of("my own dust") == 0.4
+
+
+def test_infrared_damping_counts_for_more_in_thin_gas():
+    """A tenth of the gas, four times as hot: its drag is a tenth times two, that of the light stays."""
+    assert gas_drag(1e-7, THIN_GAS) / gas_drag(1e-7) == pytest.approx(0.2)
+    assert infrared_damping(1e-7, 1.0, THIN_GAS) == pytest.approx(0.4 / 0.2)
 
 
 def test_dust_is_as_warm_as_sheds_what_it_takes():
@@ -266,6 +273,26 @@ def test_error_follows_from_those_of_the_means():
     assert row["share"] == 1.0
 
 
+def test_the_share_of_draws_that_are_destroyed_rises_with_the_strength():
+    made = make_table(materials=["q-S"], types=["BAM2"], seeds=20, scatter=0.3)
+    made = made[made["a_eff"] > 4.9e-7]
+    found = surviving(made, made, np.geomspace(1e-3, 1e3, 121), draws=400).query("law == 'ours'")
+    share, known = found["share"].to_numpy(), found["a_disr"].notna().to_numpy()
+    assert share[0] == 0.0 and share[-1] == 1.0 and (np.diff(share) >= 0.0).all()
+    # where the best law is only just reached, half of the drawn ones are
+    assert 0.3 < share[known.argmax()] < 0.9
+
+
+def test_sizes_with_one_grain_have_the_scatter_of_the_others_or_no_error():
+    made = make_table(materials=["q-S"], types=["BAM2"], seeds=20, scatter=0.3)
+    several = made[(made["seed"] == 0) | (made["a_eff"] < 2e-7)]
+    errors = [
+        surviving(table, table, [1.0], draws=300).query("law == 'ours'")["a_disr_error"].item()
+        for table in (made, several, made[made["seed"] == 0])
+    ]
+    assert 0.0 < errors[0] < errors[1] and np.isnan(errors[2])
+
+
 def test_silicates_shed_less_infrared_light_than_carbon(table):
     """The same angular velocities are reached by smaller grains of quartz, unless both shed as much."""
     same = table[table["material"] == "q-S"]
@@ -364,3 +391,9 @@ def test_light_turns_a_grain_within_the_time_that_all_drag_takes_to_stop_it():
     inertia = moment_of_inertia(1e-7, 3000.0)
     reached = radiative_torque(1e-7, 1000.0) / inertia * times[2] * year
     assert reached == pytest.approx(omega_rat(1e-7, 1000.0))
+
+
+def test_light_turns_a_porous_grain_in_thin_gas_within_the_time_that_all_drag_takes():
+    time = spin_up_time(1e-7, 2000.0, 50.0, THIN_GAS, 2.0, 0.2)
+    reached = radiative_torque(1e-7, 50.0, THIN_GAS) / moment_of_inertia(1e-7, 2000.0, 2.0) * time
+    assert reached == pytest.approx(omega_rat(1e-7, 50.0, THIN_GAS, 2.0, 0.2))

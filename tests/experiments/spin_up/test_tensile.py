@@ -63,3 +63,17 @@ def test_strengths_are_those_of_all_grown_grains_without_impossible_dimensions()
     # a noisy mean of few grains may be near 3 and more: without the table of grown grains it stands as it is
     alone, _ = predictions(cells, material, 300e-9)
     assert alone["T19 fractal"].isna().sum() > curves["T19 fractal"].isna().sum()
+
+
+def test_strengths_are_scaled_to_the_mean_of_the_size_that_is_near():
+    table = make_table(("q-S",), ("BAM2",), seeds=5)
+    cells = cell_statistics(table)
+    curves, anchor = predictions(cells, get_material("q-S"), 310e-9)
+    here = np.isclose(cells["a_eff"], 300e-9)
+    mean = table.loc[np.isclose(table["a_eff"], 300e-9), "omega_disr"].mean()
+    for name, size in anchor.items():
+        assert size == pytest.approx(300e-9) and curves.loc[here, name].item() == pytest.approx(mean)
+    # G95 goes as the root of <N_con>/<N_mon> phi, over a_eff
+    mean = table.groupby("a_eff")[["n_contacts", "n_monomers", "filling_factor"]].mean()
+    shape = np.sqrt(mean["n_contacts"] / mean["n_monomers"] * mean["filling_factor"]) / mean.index
+    np.testing.assert_allclose(curves["G95"] / curves["G95"].iloc[0], shape / shape.iloc[0])
