@@ -278,7 +278,11 @@ def test_starts_are_moved_by_less_than_an_atom(chain):
 
 def test_a_file_of_spheres_and_one_of_grains_are_shown(chain):
     done = run("show", chain, "--material", "q-S")
-    assert done.exit_code == 0 and "4 monomers, 3 contacts, radius 20 nm" in done.stdout
+    assert done.exit_code == 0 and "4 monomers, 3 contacts, radii 20" in done.stdout
+    pair = chain.with_name("pair.txt")
+    pair.write_text("0 0 0 20\n0 0 40 20\n")
+    done = run("show", pair, "--material", "q-S")
+    assert done.exit_code == 0 and "2 monomers, 1 contact, radius 20 nm" in done.stdout
     assert chain.with_suffix(".png").read_bytes()[1:4] == b"PNG"
     odd = chain.with_name("a$\\q$b.xyz")
     odd.write_bytes(chain.read_bytes())
