@@ -7,9 +7,11 @@ import pytest
 import xarray as xr
 
 import ratd
+from ratd.base.materials import MATERIALS
 from ratd.experiments.compression import losses, strength
 from ratd.experiments.compression.monomers import derived_pressure
-from ratd.experiments.compression.tables import BIN, bins, in_bins
+from ratd.experiments.compression.strain import LABELS
+from ratd.experiments.compression.tables import BIN, bins, in_bins, mean_rolling_energy
 
 P_0 = 5e5
 
@@ -185,7 +187,7 @@ def test_a_range_without_data_is_one_sentence():
 def test_means_over_bins_are_those_of_the_records():
     phi = 0.01 * 1.01 ** np.arange(400)
     run = xr.Dataset({"phi": ("record", phi * 1.005), "phi_mean": ("record", phi), "pressure": ("record", phi**3)})
-    run["pressure_tensor"] = (("record", "component"), np.tile(phi[:, None], (1, 6)))
+    run["pressure_tensor"] = (("record", "component"), phi[:, None] * np.arange(1.0, 7.0))
     for name in ("n_contacts", "work", "energy_residual", "stored_normal", "dissipated_rolling"):
         run[name] = ("record", phi)
     first, last = bins(0.01), bins(0.5)
@@ -194,6 +196,16 @@ def test_means_over_bins_are_those_of_the_records():
         inside = (phi >= BIN**number) & (phi < BIN ** (number + 1))
         assert binned["pressure"][k] == pytest.approx(np.mean(phi[inside] ** 3))
         assert binned["work"][k] == pytest.approx(BIN ** (number + 0.5), rel=0.011)
+        along = [binned[f"pressure_{name}"][k] for name in LABELS["component"]]
+        assert along == pytest.approx(np.mean(phi[inside]) * np.arange(1.0, 7.0))
+
+
+def test_the_rolling_energy_of_unequal_spheres_goes_with_their_reduced_radius():
+    """12 pi^2 gamma R xi_c, R = 75 nm of spheres of 100 and 300 nm; of equal ones 6 pi^2 gamma r_0 xi_c."""
+    ice = MATERIALS["ice"]
+    pair = ratd.Grain(np.array([[0, 0, 0], [4e-7, 0, 0]]), np.array([1e-7, 3e-7]), "ice")
+    expected = 12 * np.pi**2 * ice.surface_energy * 7.5e-8 * ice.critical_rolling_displacement
+    assert mean_rolling_energy(pair) == pytest.approx(expected, rel=1e-6)
 
 
 def test_compressive_strength_of_runs():
