@@ -106,7 +106,8 @@ def test_one_collision_a_velocity_has_no_error():
 
 def test_a_velocity_without_a_value_is_passed_over():
     table = pd.DataFrame({"velocity": [1.0, 2.0, 3.0] * 4, "X": [1.0, np.nan, 0.0] * 4})
-    assert 1.0 < fragmentation_velocity(table)["velocity"] < 3.0
+    found = fragmentation_velocity(table)
+    assert 1.0 < found["velocity"] < 3.0 and (found["below"], found["above"]) == (1.0, 3.0)
 
 
 def test_the_bootstrap_has_the_standard_error_of_the_mean():

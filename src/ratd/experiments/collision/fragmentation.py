@@ -145,8 +145,9 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     there = np.isfinite(drawn)
     spread = drawn[there] if there.sum() > 1 else np.full(2, np.nan)
     low, high = np.quantile(spread, [0.16, 0.84])
-    below = velocities[velocities <= middle].max(initial=-np.inf)
-    above = velocities[velocities > middle].min(initial=np.inf)
+    known = velocities[np.isfinite(mean)]
+    below = known[known <= middle].max(initial=-np.inf)
+    above = known[known > middle].min(initial=np.inf)
     ends = {"below": below, "above": above} if np.isfinite(middle) else {"below": np.nan, "above": np.nan}
     error = np.std(spread, ddof=1)
     beside = table[table["velocity"].isin([below, above])]
