@@ -5,6 +5,7 @@ import tomllib
 from importlib import metadata
 from pathlib import Path
 
+import pytest
 import yaml
 
 from ratd.validation import peer_lammps
@@ -56,3 +57,9 @@ def test_environment_of_conda_has_the_same_versions():
     *packages, project = environment["dependencies"][-1]["pip"]
     assert project == "../.."
     assert dict(package.split("==") for package in packages).items() <= pinned().items()
+
+
+def test_small_numbers_are_compared_by_their_part():
+    """As pytest has it, every energy below 1e-12 J would equal every other."""
+    assert 0.0 != pytest.approx(1.47e-17, rel=5e-3) and 1.48e-17 != pytest.approx(1.47e-17)
+    assert 1.4701e-17 == pytest.approx(1.47e-17, rel=1e-3) and 1e-13 == pytest.approx(0.0, abs=1e-12)

@@ -38,7 +38,7 @@ def test_what_a_run_holds(run):
     assert run.attrs["impact_energy"] == pytest.approx(mass * 4.0**2 / 4, rel=1e-12)
     assert float(run.kinetic_translation[0]) == pytest.approx(run.attrs["impact_energy"], rel=1e-9)
     assert run.attrs["balance"] <= 0.01 and run.attrs["balance"] == pytest.approx(
-        np.abs(run.residual).max() / run.attrs["impact_energy"]
+        np.abs(run.residual.values).max() / run.attrs["impact_energy"]
     )
     np.testing.assert_allclose(run.snapshot_time, run.time.values[[0, 3, 6]])
     assert np.array_equal(run.snapshot_position[-1], run.position) and np.array_equal(run.snapshot_piece[-1], run.piece)
