@@ -381,3 +381,8 @@ def test_pieces_are_numbered_by_their_mass():
     position = [[0, 0, 0], [1e-6, 0, 0], [1e-6 + 1.99e-8, 0, 0]]
     run = evolve(position, np.full(3, 1e-8), duration=1e-11, records=2, snapshot_every=1)
     assert run["piece"].values.tolist() == [1, 0, 0] and (run["snapshot_piece"] == run["piece"]).all()
+
+
+def test_the_last_record_has_a_snapshot_whatever_lies_between_two():
+    run = evolve([[0, 0, 0], [1e-6, 0, 0]], [1e-8] * 2, duration=1e-10, timestep=1e-12, records=3, snapshot_every=2)
+    assert run["snapshot_time"].values.tolist() == run["time"].values[[0, 2, 3]].tolist()
