@@ -1,4 +1,4 @@
-# docs/collision.md and its appendix from the collisions that are committed with it: seconds, and no collision is computed.
+# docs/collision.md and its appendix from the collisions that are committed with them: seconds, nothing is computed.
 from ratd.experiments.collision import document_plan as page
 
 PAGE_TABLES = [name for name in COLLISION_TABLES if name != "collision_clusters"]

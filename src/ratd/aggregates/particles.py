@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from scipy.spatial import cKDTree
 
 from ratd.aggregates.grain import Grain
 from ratd.base.checks import LARGEST_RADIUS, SMALLEST_RADIUS, is_dust, is_whole, likely_unit
 from ratd.base.errors import FileError, InputError
 from ratd.base.materials import Material
 from ratd.base.words import plural
+from ratd.geometry.box import periodic, touching_pairs
 
 __all__ = [
     "STYLES",
@@ -50,6 +50,8 @@ TABLES = {".csv": ",", ".txt": " ", ".dat": " "}
 _PARTED = {",": "commas", " ": "blanks or tabs"}
 XYZ, DUMP = (".xyz", ".extxyz"), (".dump", ".lammpstrj", ".lammps")
 SUFFIXES = (*TABLES, *XYZ, *DUMP)
+TOUCHING = 1e-9
+"""Part of their radii by which spheres may be apart and touch all the same, since files round."""
 
 
 class Particles(NamedTuple):
@@ -164,6 +166,7 @@ def _numbers(column, name):
 
 
 def path_of(path):
+    """What a user gave for a path, as a Path."""
     if not isinstance(path, str | os.PathLike):
         raise InputError(f"path is {path!r}; it must be the path of a file")
     return Path(path)
@@ -191,20 +194,16 @@ def _check_unit(path, unit, radius):
 
 
 def factor_of(unit):
+    """Length of a unit of files [m]."""
     if unit not in UNITS:
         raise InputError(f"unit is {unit!r}; allowed: {', '.join(UNITS)}")
     return UNITS[unit]
 
 
 def _through_the_faces(position, radius, box):
-    """How many pairs of spheres touch through the faces of a periodic box with edges (3,) alone."""
-    tree = cKDTree(np.mod(position, box), boxsize=box)
-    i, j = tree.query_pairs(2.0 * radius.max(), output_type="ndarray").T
-    apart = position[i] - position[j]
-    near = apart - box * np.round(apart / box)
-    reach = radius[i] + radius[j]
-    touching = np.linalg.norm(near, axis=1) <= reach
-    return int((touching & (np.linalg.norm(apart, axis=1) > reach)).sum())
+    """How many pairs of spheres touch through the faces of a periodic box with edges (3,)."""
+    pairs = touching_pairs(position, radius * (1.0 + TOUCHING), periodic(box))
+    return int(pairs[:, 2:].any(axis=1).sum())
 
 
 def suffix_of(path):
@@ -213,6 +212,7 @@ def suffix_of(path):
 
 
 def reader_of(path):
+    """The function that reads files with the suffix of a path; InputError where there is none."""
     if suffix_of(path) in TABLES:
         return _read_table
     if suffix_of(path) in XYZ:

@@ -162,9 +162,9 @@ def _side_by_side(tasks, until, processes):
                 if task is None:
                     break
                 running[pool.submit(_timed, task.make)] = task
-            if not running and failed is not None:
-                raise failed
             if not running:
+                if failed is not None:
+                    raise failed
                 return
             finished, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in finished:
