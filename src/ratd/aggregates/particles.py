@@ -5,7 +5,7 @@ import re
 import shlex
 import warnings
 from io import StringIO
-from itertools import dropwhile, pairwise, takewhile
+from itertools import pairwise, takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -305,7 +305,10 @@ def _names_columns(line, separator):
 def _frames(lines, length):
     """Frames of a file as lists of lines; `length` gives that of the one that begins with some lines."""
     frames = []
-    while lines := list(dropwhile(lambda line: not line.strip(), lines)):
+    while lines:
+        if not lines[0].strip():
+            lines = lines[1:]
+            continue
         n = length(lines)
         if n < 1:
             raise ValueError(f"a frame begins with {lines[0]!r}; allowed: the number of its spheres")
