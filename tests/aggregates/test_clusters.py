@@ -97,6 +97,7 @@ def test_unequal_radii_are_those_given():
         ({"n": 1000}, r"n is 1000; it must be a power of 2 from 2 on \(512 or 1024\)"),
         ({"n": 1}, "n is 1; it must be a power of 2 from 2 on,"),
         ({"n": 64.0}, "n is 64.0; it must be a power of 2"),
+        ({"n": 2**40}, "n is 1099511627776; it must be at most 16777216: "),
         (
             {"n": 64, "material": "q-S"},
             "radius is None; it must be a number above 0, in m, and may be left out for ice",

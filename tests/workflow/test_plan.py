@@ -44,6 +44,16 @@ def test_mistakes_of_all_experiments_are_told_at_once(tmp_path):
     assert done.returncode == 1 and [line.split(" is ")[0] for line in said] == [f"config: {b}" for b in beginnings]
 
 
+def test_an_experiment_without_keys_is_told_in_one_sentence(tmp_path):
+    pipeline = Pipeline(tmp_path)
+    names = ["collision", "compression", "spin_up"]
+    (tmp_path / "tiny.yaml").write_text(yaml.safe_dump(dict.fromkeys(names)))
+    done = pipeline.run("--dry-run")
+    said = [line for line in done.stdout.splitlines() if line.startswith("config: ")]
+    allowed = "allowed: a mapping of the keys in config/schema"
+    assert said == [f"config: {name} is None; {allowed}/{name}.schema.yaml" for name in names]
+
+
 def test_a_config_that_is_no_yaml_is_named_with_its_line(tmp_path):
     pipeline = Pipeline(tmp_path)
     pipeline.write_config(TINY)

@@ -14,6 +14,8 @@ __all__ = ["MONOMER_RADIUS", "grow_bcca"]
 
 MONOMER_RADIUS = {"ice": 100 * NM, "silicate": 600 * NM}
 """Radii [m] of the monomers of Table 1 of Kataoka et al. (2013), by material."""
+LARGEST = 2**24
+"""Number of monomers at most: growing so many takes gigabytes."""
 
 
 def grow_bcca(n, material="ice", seed=0, *, radius=None, radii=None, copies=False):
@@ -22,7 +24,7 @@ def grow_bcca(n, material="ice", seed=0, *, radius=None, radii=None, copies=Fals
     Parameters
     ----------
     n : int
-        Number of monomers, a power of 2 from 2 on.
+        Number of monomers, a power of 2 from 2 to 2^24.
     material : str or Material
         What the monomers are made of.
     seed : int
@@ -78,6 +80,8 @@ def _check_number(n):
         raise InputError(
             f"n is {n!r}; it must be a power of 2 from 2 on{below}, a whole number: clusters of equal number join."
         )
+    if n > LARGEST:
+        raise InputError(f"n is {n}; it must be at most {LARGEST}: growing so many takes gigabytes.")
     return int(n)
 
 

@@ -16,6 +16,7 @@ from ratd.engine.leapfrog import leapfrog, limit_step
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
+from ratd.experiments.made_with import made_with
 from ratd.experiments.unfinished import attached
 from ratd.geometry.box import open_space, touching_pairs
 from ratd.laws.chosen import law_of
@@ -137,7 +138,8 @@ def evolve(
     -------
     xarray.Dataset
         Along ``record`` the time, energies, momenta, pieces (see `RECORDS`); along ``monomer``, in the order given, the
-        last positions (unwrapped), velocities, spins and pieces; along ``snapshot`` positions and pieces.
+        last positions (unwrapped), velocities, spins and pieces; along ``snapshot`` positions and pieces. The
+        attributes tell law, material and box.
 
     Raises
     ------
@@ -197,7 +199,8 @@ def evolve(
     foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
     moved, checked = _moved(rows, rows[0]), 1
     first_step = state.scalar[DT]
-    with attached("run", lambda error: _dataset(getattr(error, "state", state), rows, pictures, law, box)):
+    parts = law, box, materials
+    with attached("run", lambda error: _dataset(getattr(error, "state", state), rows, pictures, *parts)):
         while len(rows) <= records:
             goal = until(time=duration * len(rows) / records, steps=state.counter[STEPS] + CALL)
             state, code = run(state, law, drive, box, integrator, goal)
@@ -224,7 +227,7 @@ def evolve(
                 now = state.scalar[TIME]
                 progress(now / duration, pace.to_go(duration - now, now), rows[-1])
     _warn_of_passing(velocity, radius, max(first_step, state.scalar[DT]))
-    return _dataset(state, rows, pictures, law, box)
+    return _dataset(state, rows, pictures, *parts)
 
 
 def _check_drive(drive, in_box, drag):
@@ -440,7 +443,7 @@ def _check_balance(row, moved, share):
         )
 
 
-def _dataset(state, rows, pictures, law, box):
+def _dataset(state, rows, pictures, law, box, materials):
     variables = {}
     for name, values in columns(np.array(rows)).items():
         dims, units, meaning = RECORDS[name]
@@ -473,10 +476,9 @@ def _dataset(state, rows, pictures, law, box):
         "axis": ["x", "y", "z"],
         "component": list(COMPONENTS),
     }
-    about = {
+    about = made_with(law, materials) | {
         "steps": int(state.counter[STEPS]),
         "timestep": float(state.scalar[DT]),
-        "law": repr(law),
         "box": repr(box),
     }
     return xr.Dataset(variables, coords=coordinates, attrs=about)

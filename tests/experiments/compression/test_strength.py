@@ -134,6 +134,11 @@ def test_runs_that_differ_in_more_than_their_seeds_are_not_one_set(name, value):
         ratd.compressive_strength(both)
 
 
+def test_a_run_without_records_has_no_strength():
+    with pytest.raises(ratd.InputError, match="run has no records: it ended before the first one"):
+        ratd.compressive_strength(of_one(P_0).isel(record=slice(0, 0)))
+
+
 def test_a_run_counts_once():
     runs = [of_one(P_0), of_one(0.9 * P_0), of_one(P_0)]
     with pytest.raises(ratd.InputError, match="the runs 0 and 2 are the same one; each may be given once"):

@@ -215,11 +215,9 @@ def collide(
         )
     run["cluster"] = ("monomer", owner, {"units": "1", "long_name": "cluster that the sphere came with"})
     run.attrs |= {
-        "material": material.name,
         "velocity": float(velocity),
         "impact_parameter": float(impact_parameter),
         "seed": int(seed),
-        "density": material.density,
         "mass_a": float(a.mass.sum()),
         "mass_b": float(b.mass.sum()),
         "impact_energy": float(energy),

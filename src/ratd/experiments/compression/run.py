@@ -2,7 +2,6 @@
 
 import math
 import warnings
-from dataclasses import fields
 
 import numpy as np
 import xarray as xr
@@ -19,6 +18,7 @@ from ratd.experiments.compression.static import box_rate, static_from, time_unit
 from ratd.experiments.compression.steps import LongSteps, integrators
 from ratd.experiments.compression.strain import Parts, strain, strain_dataset
 from ratd.experiments.evolve import depth
+from ratd.experiments.made_with import constants_of
 from ratd.experiments.unfinished import attached
 from ratd.geometry.box import periodic, touching_pairs
 from ratd.geometry.shape import greatest_extent
@@ -266,8 +266,7 @@ def attributes(cluster):
     """What the file of a run says of the aggregate, dict."""
     material = cluster.grain.material
     return {
-        "material": material.name,
-        **{field.name: getattr(material, field.name) for field in fields(material) if field.name != "name"},
+        **constants_of(material),
         "n_monomers": cluster.grain.n_monomers,
         "seed": -1 if cluster.grain.seed is None else cluster.grain.seed,
         "monomer_radius": cluster.radius,

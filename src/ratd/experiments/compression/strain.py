@@ -14,6 +14,7 @@ from ratd.engine.semi_implicit import SemiImplicit
 from ratd.engine.state import FIELD_TYPES, State, monomer_rows, positions_as_given
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
+from ratd.experiments.made_with import SOURCE
 from ratd.experiments.unfinished import attached
 from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kinetic, stored
 from ratd.observables.pressure import COMPONENTS, volume
@@ -212,6 +213,7 @@ def strain_dataset(state, rows, parts):
         "steps": int(state.counter[STEPS]),
         "timestep": float(state.scalar[DT]),
         "mass": float(monomer_rows(state)[:, MASS].sum()),
+        "source": SOURCE,
         "law": repr(parts.law),
         "integrator": repr(parts.integrator),
     }

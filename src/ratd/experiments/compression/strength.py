@@ -420,6 +420,8 @@ def _check_runs(runs):
         if not isinstance(one, xr.Dataset) or "rolling_pressure" not in one.attrs or not needed <= set(one):
             what = "the Dataset of something else" if isinstance(one, xr.Dataset) else f"of type {type(one).__name__}"
             raise InputError(f"run is {what}; {allowed}.")
+        if not one.sizes["record"]:
+            raise InputError("run has no records: it ended before the first one, and tells no pressure.")
     every = sorted({float(one.attrs["rolling_pressure"]) for one in runs})
     if every[-1] > UNEQUAL * every[0]:
         raise InputError(

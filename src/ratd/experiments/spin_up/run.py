@@ -15,6 +15,7 @@ from ratd.engine.state import copied
 from ratd.engine.step import CALL, FEW_CONTACTS, STEPS_DONE, until
 from ratd.engine.step import run as go_on
 from ratd.experiments import intervals
+from ratd.experiments.made_with import made_with
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.how import DRAG, PACE, TIMESTEP_FACTOR, UNREST, how_to_turn
@@ -116,9 +117,8 @@ def spin_up(
     -------
     xarray.Dataset
         Dimensions ``record``, ``fragment`` (those that left, in their order, then those cut off but still near at the
-        end), ``snapshot`` and ``monomer``; the
-        attributes tell the settings, ``steps``, ``timestep`` [s], ``end_reason``, ``cut_bound`` [rad/s] and the
-        state after relaxation (``initial_...``).
+        end), ``snapshot`` and ``monomer``; the attributes tell the settings, law and material, ``steps``, ``timestep``
+        [s], ``end_reason``, ``cut_bound`` [rad/s] and the state after relaxation (``initial_...``).
 
     Raises
     ------
@@ -308,12 +308,12 @@ class Run:
             run["energy_residual"][:] = np.nan
         run.attrs = (
             self.how.attributes
+            | made_with(self.law, [grain.material])
             | {
                 "steps": int(self.state.counter[STEPS]),
                 "timestep": first[-1],
                 "smaller_steps": self.smaller_steps,
                 "end_reason": self.reason or "failed",
-                "material": grain.material.name,
                 "type": grain.type or "",
                 "a_eff": grain.effective_radius,
                 "seed": -1 if grain.seed is None else int(grain.seed),

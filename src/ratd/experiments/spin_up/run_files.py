@@ -3,8 +3,10 @@
 Every reader names what is wrong with a damaged or foreign file, see `ratd.pipeline.io.read`.
 """
 
+from ratd.experiments.made_with import constants_of
 from ratd.pipeline import io
-from ratd.pipeline.blocks import rows
+from ratd.pipeline.blocks import material_of, rows
+from ratd.pipeline.kinds import MATERIAL
 
 __all__ = ["read_fit", "read_grown", "read_marks", "read_runs", "read_table", "run_of_seed", "run_row", "runs"]
 
@@ -24,6 +26,8 @@ def run_row(run):
     """
     flat = [name for name in run.variables if run[name].dims == ("snapshot", "monomer")]
     row = run.drop_vars(flat)
+    # a file has the constants of the material once, and tells its source and law in other words
+    row.attrs = {name: value for name, value in run.attrs.items() if name not in (*MATERIAL, "source", "law")}
     for name in flat:
         row[name] = ("snapshot_monomer", run[name].values.ravel(), run[name].attrs)
     return row
@@ -40,9 +44,10 @@ def runs(dataset):
     Returns
     -------
     list of xarray.Dataset
-        As `ratd.spin_up` returns them.
+        As `ratd.spin_up` returns them, without ``source`` and ``law``.
     """
     result = []
+    about = constants_of(material_of(dataset))
     for row in rows(dataset, "spinup"):
         flat = [name for name in row.variables if row[name].dims == ("snapshot_monomer",)]
         run = row.drop_vars(flat)
@@ -52,7 +57,7 @@ def runs(dataset):
             shape = row.sizes["snapshot"], row.sizes["monomer"]
             for name in flat:
                 run[name] = (("snapshot", "monomer"), row[name].values.reshape(shape), row[name].attrs)
-        result.append(run)
+        result.append(run.assign_attrs(about))
     return result
 
 
