@@ -22,7 +22,7 @@ LAYERS = (
     "__main__",
 )
 """Each imports from itself and those before it."""
-COMMON = ("relax", "evolve", "command", "intervals", "made_with", "saved", "unfinished")
+COMMON = ("relax", "evolve", "command", "intervals", "leapfrog_for", "made_with", "saved", "unfinished")
 """Modules of `experiments` that all experiments may import."""
 LONGEST_MODULE, LONGEST_FUNCTION = 500, 80
 

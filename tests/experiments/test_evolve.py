@@ -359,7 +359,7 @@ def test_spheres_that_may_pass_through_each_other_are_warned_of():
 def test_spheres_that_fly_at_each_other_meet_however_fast():
     """The first step too is so short that none moves by more than a part of its radius."""
     fast = {"position": [[0, 0, 0], [0, 0, 2.5 * A]], "radius": [A, A], "velocity": [[0, 0, 1e4], [0, 0, -1e4]]}
-    run = evolve(**fast, material="q-S", duration=0.01 * A / 1e4, records=1, balance=None)
+    run = evolve(**fast, material="q-S", duration=0.01 * A / 1e4, records=1, balance=None, timestep_factor=0.125)
     assert run["position"][0, 2].item() == pytest.approx(0.125 * A, rel=1e-6)
     run = evolve(**fast, material="q-S", duration=0.4 * A / 1e4, records=8, balance=None)
     assert run["n_contacts"].values.max() == 1

@@ -12,10 +12,11 @@ from ratd.drives.free import rest
 from ratd.drives.squeezing import WORK, mean_pressure_tensor, squeezing
 from ratd.engine import checkpoint as checkpoints
 from ratd.engine.layout import CONTACTS, DT, FASTEST, RADIUS, STEPS, TIME, VX, WX, X
-from ratd.engine.leapfrog import leapfrog, limit_step
+from ratd.engine.leapfrog import limit_step
 from ratd.engine.state import has_images, monomer_rows, new_state
 from ratd.engine.step import CALL, STEPS_DONE, run, until
 from ratd.experiments import intervals
+from ratd.experiments.leapfrog_for import leapfrog_for
 from ratd.experiments.made_with import made_with
 from ratd.experiments.unfinished import attached
 from ratd.geometry.box import open_space, touching_pairs
@@ -73,8 +74,8 @@ def evolve(
     drive=None,
     duration,
     timestep=None,
-    timestep_factor=0.125,
-    damping="implicit",
+    timestep_factor=None,
+    damping=None,
     drag=0.0,
     contacts=None,
     records=100,
@@ -107,12 +108,13 @@ def evolve(
         How long [s].
     timestep : float, optional
         A fixed step [s].
-    timestep_factor : float
-        The step over the shortest time of any contact, when `timestep` is not given.
-    damping : {"implicit", "explicit"}
-        How the normal damping is integrated (`ratd.engine.leapfrog`). Implicit is stable at any step, and damps too
-        little where the damping is strong, as it is with DMT: spheres that hit each other rebound too fast. For these
-        take "explicit" and a timestep_factor of 0.03, or `ratd.collide`, which does so itself.
+    timestep_factor : float, optional
+        The step over the shortest time of any contact, when `timestep` is not given. By default 0.125, for DMT 0.03, or
+        less, so that impacts of spheres at the velocities given take a hundred steps at the least.
+    damping : {"implicit", "explicit"}, optional
+        How the normal damping is integrated (`ratd.engine.leapfrog`); implicit, for DMT explicit. Implicit is stable
+        at any step, and damps too little where the damping is strong, as it is with DMT: spheres that hit each other
+        rebound too fast.
     drag : float
         Rate [1/s] at which velocities and spins decay, to bring an aggregate to rest in open space.
     contacts : (k, 2) or (k, 5) array_like, optional
@@ -175,7 +177,8 @@ def evolve(
         _check_reach(contacts, position, radius, box)
     if drive is None:
         drive = squeezing() if in_box else rest(drag)
-    integrator = leapfrog(timestep_factor=timestep_factor, timestep=timestep, damping=damping)
+    given_step = {"timestep": timestep, "timestep_factor": timestep_factor, "damping": damping}
+    integrator = leapfrog_for(law, radius, materials, velocity, **given_step)
 
     settings = (materials, law, box, drive, integrator, float(duration), records, snapshot_every)
     inputs = (position, radius, velocity, spin, kind, contacts)
@@ -192,7 +195,7 @@ def evolve(
         if timestep is None and velocity is not None:
             # as the integrator does after each step
             state.scalar[FASTEST] = np.linalg.norm(velocity, axis=1).max()
-            limit_step(state, timestep_factor * radius.min())
+            limit_step(state, integrator.timestep_factor * radius.min())
         rows = [_row(state, law, box, None)]
         pictures = [_picture(state)] if snapshot_every else []
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
