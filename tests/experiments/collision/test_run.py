@@ -95,7 +95,10 @@ def test_built_clusters_are_at_rest_and_others_come_to_rest():
         ({"velocity": 0.0}, "velocity is 0.0; it must be a number above 0"),
         ({"velocity": -3.0}, "velocity is -3.0"),
         ({"velocity": np.nan}, "velocity is nan"),
-        ({"velocity": 1e5}, r"velocity is 100000 m/s: in a timestep of .* take a timestep of at most"),
+        (
+            {"velocity": 1e5, "timestep": 1e-12},
+            r"velocity is 100000 m/s: in a timestep of .* take a timestep of at most",
+        ),
         ({"law": "hertz"}, "law is 'hertz'; allowed are 'dmt', 'jkr'"),
         ({"law": 3}, "law is 3; allowed are"),
         ({"impact_parameter": 1.0}, "impact_parameter is 1.0"),
@@ -127,13 +130,30 @@ def test_steps_and_balances_that_are_allowed():
     """The limit of `longest_step` is a quarter of the time of the damping."""
     radius = np.array([50e-9, 1e-6])
     law = ratd.laws.dmt()
-    assert step_of(radius, SILICA, law) < longest_step(radius, SILICA, law)
+    assert step_of(radius, SILICA, law, 10.0) < longest_step(radius, SILICA, law)
     # about 1 ps, as the paper has for spheres of 50 nm, and less with more damping
-    assert step_of(radius, SILICA, law) == pytest.approx(1e-12, rel=0.35)
-    assert step_of(radius, SILICA, ratd.laws.dmt(viscous_time=1e-9)) == pytest.approx(0.5e-12, rel=0.35)
+    assert step_of(radius, SILICA, law, 10.0) == pytest.approx(1e-12, rel=0.35)
+    assert step_of(radius, SILICA, ratd.laws.dmt(viscous_time=1e-9), 10.0) == pytest.approx(0.5e-12, rel=0.35)
     assert balance_of(law) == 0.01 and balance_of(ratd.laws.dmt(friction="spring")) == 0.03
     slow = ratd.laws.dmt(friction_time=1e-13)
-    assert step_of(radius, SILICA, slow) == pytest.approx(1e-13 / 15)
+    assert step_of(radius, SILICA, slow, 10.0) == pytest.approx(1e-13 / 15)
+
+
+def test_the_faster_the_shorter_the_step():
+    radius, jkr = np.array([0.5e-6, 1e-6]), ratd.laws.jkr()
+    slow, fast = (step_of(radius, SILICA, jkr, velocity) for velocity in (10.0, 320.0))
+    # the time of an impact goes with the velocity to the power of -1/5
+    assert slow == pytest.approx(2.0 * fast, rel=1e-9)
+    # no farther than 2 % of the smallest radius
+    for law in (jkr, ratd.laws.dmt()):
+        assert step_of(radius, SILICA, law, 1e6) == pytest.approx(1e-14, rel=1e-9)
+
+
+def test_hard_impacts_of_large_spheres_keep_their_energy_under_jkr():
+    """With the step of a contact at rest this run would end with spheres that fly away at kilometres a second."""
+    cluster = ratd.grow_bcca(16, "q-S", radius=1e-6, seed=2)
+    run = ratd.collide(cluster, cluster, velocity=50.0, law="jkr", duration=8e-7, records=10)
+    assert run.attrs["balance"] < 2e-3 and run.n_pieces.values[-1] > 20
 
 
 def meet(velocity, a_i=0.3e-6, a_j=0.57e-6, *, aside=0.0, spin=None, law=None, duration=4e-8):

@@ -5,6 +5,7 @@ import numpy as np
 from ratd.base.materials import sphere_mass
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
+from ratd.experiments.leapfrog_for import STEPS_OF_IMPACT, impact_duration
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import reduced_radius, touching_distance
 from ratd.laws.contact_fields import STEP
@@ -12,7 +13,7 @@ from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overl
 from ratd.laws.dmt_with_friction import DMT, SPRING, VELOCITY
 from ratd.laws.jkr_with_springs import JKR
 
-__all__ = ["BALANCE", "SPRING_BALANCE", "balance_of", "contacts_of", "longest_step", "step_of"]
+__all__ = ["BALANCE", "FARTHEST", "SPRING_BALANCE", "balance_of", "contacts_of", "longest_step", "step_of"]
 
 BALANCE, SPRING_BALANCE = 0.01, 0.03
 """Part of the kinetic energy at the start by which the balance of energy may be off. The springs of DMT follow the
@@ -20,6 +21,9 @@ radius of the contact and are not exactly conservative."""
 PARTS = {"contact": 1 / 16, "period": 1 / 300, "friction": 1 / 15}
 """The step over the shortest time of a contact of the smallest sphere, over the period in which two of them vibrate,
 and over the time in which friction follows the rate."""
+FARTHEST = 0.02
+"""Part of the smallest radius by which the clusters may come nearer in a step: faster ones would pass through each
+other without a contact."""
 LONGEST_PARTS = {"contact": 1 / 4, "period": 1 / 40, "friction": 1 / 2}
 """Steps beyond are refused: hard impacts and spheres of several contacts shorten the times of a contact at rest."""
 
@@ -66,9 +70,16 @@ def _times(radius, material, law):
     return times
 
 
-def step_of(radius, material, law):
-    """Time step [s] for spheres of some radii [m] with explicit damping."""
-    return min(PARTS[name] * time for name, time in _times(radius, material, law).items())
+def step_of(radius, material, law, velocity):
+    """Time step [s] for spheres of some radii [m] that meet at a velocity [m/s], with explicit damping."""
+    least = float(np.min(radius))
+    steps = [PARTS[name] * time for name, time in _times(radius, material, law).items()]
+    if isinstance(law, JKR):
+        # that of DMT is shorter anyhow, by its damping and its period
+        mass = 0.5 * sphere_mass(least, material.density)
+        impact = impact_duration(mass, reduced_radius(least, least), material.reduced_modulus, velocity)
+        steps.append(impact / STEPS_OF_IMPACT)
+    return min(*steps, FARTHEST * least / velocity)
 
 
 def longest_step(radius, material, law):

@@ -8,7 +8,7 @@ from ratd.aggregates.grain import Grain
 from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
-from ratd.experiments.collision.laws import balance_of, contacts_of, longest_step, step_of
+from ratd.experiments.collision.laws import FARTHEST, balance_of, contacts_of, longest_step, step_of
 from ratd.experiments.evolve import columns, evolve
 from ratd.experiments.relax import relax
 from ratd.engine.state import positions_as_given
@@ -28,9 +28,6 @@ STILL = 0.2
 """Part of the velocity at which two clusters that still near each other at the end are said to have barely met."""
 WIDEST = 100.0
 """Greatest gap at the start over the width of the clusters."""
-FARTHEST = 0.02
-"""Part of the smallest radius by which the clusters may come nearer in a step: faster ones would pass through each
-other without a contact."""
 
 
 def impact_energy(mass_a, mass_b, velocity):
@@ -124,8 +121,8 @@ def collide(
     duration : float
         [s]
     timestep : float, optional
-        [s]; from the contacts of the smallest sphere when not given. The damping is explicit: it decides what becomes
-        of the clusters, and the implicit one is biased (`docs/model/engine.md`).
+        [s]; from the contacts of the smallest sphere and the velocity when not given. The damping is explicit: it
+        decides what becomes of the clusters, and the implicit one is biased (`docs/model/engine.md`).
     gap : float
         Least distance of the two at the start [m].
     records : int
@@ -167,7 +164,7 @@ def collide(
     material = a.material
     radius = np.concatenate([a.radius, b.radius])
     if timestep is None:
-        timestep = step_of(radius, material, law)
+        timestep = step_of(radius, material, law, velocity)
     elif not is_number(timestep) or not timestep > 0.0:
         raise InputError(f"timestep is {timestep!r}; it must be a number above 0, in s.")
     elif not timestep <= (longest := longest_step(radius, material, law)):
@@ -175,7 +172,7 @@ def collide(
             f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
         )
     nearer = FARTHEST * radius.min()
-    if velocity * timestep > nearer:
+    if velocity * timestep > nearer * (1.0 + 1e-12):
         raise InputError(
             f"velocity is {velocity:g} m/s: in a timestep of {timestep:.3g} s the clusters come nearer by more than "
             f"{FARTHEST:.0%} of the smallest radius; take a timestep of at most {nearer / velocity:.2g} s."
