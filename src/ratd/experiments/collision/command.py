@@ -50,7 +50,7 @@ SNAPSHOTS = 5
 )  # fmt: skip
 @click.option("--law", default="dmt", show_default=True, type=click.Choice(["dmt", "jkr"]), help="Of the contacts.")
 @click.option("--duration", default=DURATION, show_default=True, type=Finite(0, 1e-3, min_open=True), help="[s]")
-@click.option("--timestep", type=Finite(0, min_open=True), help="[s]  [default: by the smallest sphere, the law and the velocity]")
+@click.option("--timestep", type=Finite(0, min_open=True), help="[s]  [default: by smallest sphere, law and velocity]")
 def command(file, material, unit, starts, out, velocity, other, impact_parameter, law, duration, timestep):
     """Shoot an aggregate at itself, or at another one.
 
