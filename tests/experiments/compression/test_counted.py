@@ -1,14 +1,17 @@
 """Small compressions and pulls, whose numbers are counted once more by slow and obvious means."""
 
 import warnings
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 import ratd
+from ratd.base.materials import MATERIALS
+from ratd.experiments.compression import tables
 from ratd.experiments.compression.monomers import derived_pressure
 from ratd.experiments.compression.run import balance_check
-from ratd.experiments.compression.tables import DISTANCES, set_of
+from ratd.experiments.compression.tables import DISTANCES, gyration, joined, set_of, typed
 
 RADIUS = 1e-7
 
@@ -85,3 +88,37 @@ def test_dense_clusters_are_held_to_a_stricter_balance_and_long_steps_to_a_milde
     for wrong, long in ((row | {"phi": 0.4}, False), (row | {"phi": 0.4, "energy_residual": 0.15}, True)):
         with pytest.raises(RuntimeError):
             check(wrong, zero, long)
+
+
+def test_tables_of_some_seeds_join_to_that_of_all(grains, runs):
+    """Runs that begin and end in other bins."""
+    later = runs[1].isel(record=slice(3, -4))
+    whole = typed(set_of([runs[0], later], grains).assign(mean_square_gyration=1.0, mean_square_gyration_error=0.1))
+    parts = [
+        typed(set_of([run], [grain]).assign(mean_square_gyration=1.0, mean_square_gyration_error=0.1))
+        for run, grain in zip((runs[0], later), grains, strict=True)
+    ]
+    table = joined(*parts)
+    assert set(table.variables) == set(whole.variables) and table.attrs["law"] == whole.attrs["law"]
+    for name in whole.variables:
+        # means of the radii are of the first table
+        if name not in ("mean_radius", "mean_square_radius"):
+            np.testing.assert_allclose(table[name].values, whole[name].values, rtol=1e-12, err_msg=name)
+    assert joined(*parts[::-1])["seed"].values.tolist() == [0, 1]
+    with pytest.raises(ratd.InputError, match="both tables have the seed 1; each seed may be in one of them"):
+        joined(parts[1], whole)
+    with pytest.raises(ratd.InputError, match="they differ in scheme, strain_rate"):
+        other = parts[1].assign(strain_rate=2.0 * parts[1]["strain_rate"]).assign_attrs(scheme="as_printed")
+        joined(parts[0], other)
+
+
+def test_the_radius_of_gyration_of_a_set_is_that_of_many_clusters(monkeypatch):
+    monkeypatch.setattr(tables, "GYRATION_SEEDS", 3)
+    settings = {"material": asdict(MATERIALS["ice"]), "n": 64, "radius": 1e-7, "radii": None, "copies": False}
+    squares = []
+    for seed in range(3):
+        position = ratd.grow_bcca(64, seed=seed).position
+        apart = position[:, None] - position
+        squares.append((apart**2).sum() / (2 * 64**2))
+    mean, error = gyration(settings)
+    assert mean == pytest.approx(np.mean(squares)) and error == pytest.approx(np.std(squares, ddof=1) / 3**0.5)
