@@ -199,6 +199,16 @@ def test_what_is_there_is_taken_and_other_runs_are_not_overwritten(chain, monkey
     assert target.read_bytes() == made
 
 
+def test_an_aggregate_that_has_changed_does_not_get_the_old_answer(chain):
+    run("spin-up", chain, *FAST)
+    made = chain.with_name("chain_spin_up.nc").read_bytes()
+    write_particles(make_grain(n=5), chain)
+    other = run("spin-up", chain, *FAST)
+    assert other.exit_code == 1 and "remove it, or give another --out" in other.stderr
+    assert chain.with_name("chain_spin_up.nc").read_bytes() == made
+    assert run("spin-up", chain, *FAST, "--out", chain.with_name("new")).exit_code == 0
+
+
 def test_more_starts_are_added_to_those_that_are_there_and_fewer_take_none_away(chain, monkeypatch):
     begun = []
 

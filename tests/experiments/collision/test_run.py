@@ -16,7 +16,7 @@ from ratd.experiments.collision.laws import balance_of, longest_step, step_of
 from ratd.experiments.collision.run import at_rest, collide
 from ratd.experiments.collision.sticking import breaking_energy_of, parting_velocity, sticking_velocity
 from ratd.experiments.evolve import evolve
-from ratd.laws.derjaguin_muller_toporov import hertz_stiffness
+from ratd.laws.derjaguin_muller_toporov import adhesion_force, equilibrium_overlap, hertz_stiffness
 from ratd.laws.dmt_with_friction import viscous_time_of
 from ratd.laws.johnson_kendall_roberts import viscoelastic_damping
 
@@ -137,6 +137,21 @@ def test_steps_and_balances_that_are_allowed():
     assert balance_of(law) == 0.01 and balance_of(ratd.laws.dmt(friction="spring")) == 0.03
     slow = ratd.laws.dmt(friction_time=1e-13)
     assert step_of(radius, SILICA, slow, 10.0) == pytest.approx(1e-13 / 15)
+
+
+def test_a_large_partner_shortens_the_step_of_a_small_sphere():
+    """The time of the damping, m/(K A sqrt(delta_eq)), with K and delta_eq of the pair."""
+    small, large, viscous = 50e-9, 1e-6, 1e-9
+    steps = []
+    for other in (small, large):
+        r = small * other / (small + other)
+        hertz = hertz_stiffness(r, SILICA.reduced_modulus)
+        overlap = equilibrium_overlap(hertz, adhesion_force(r, SILICA.surface_energy))
+        mass = SILICA.density * 4.0 / 3.0 * np.pi * small**3
+        steps.append(mass / (hertz * viscous * np.sqrt(overlap)) / 16.0)
+    law = ratd.laws.dmt(viscous_time=viscous)
+    assert step_of(np.array([small]), SILICA, law, 10.0) == pytest.approx(steps[0], rel=1e-6)
+    assert step_of(np.array([large, small]), SILICA, law, 10.0) == pytest.approx(steps[1], rel=1e-6)
 
 
 def test_the_faster_the_shorter_the_step():
