@@ -8,7 +8,7 @@ import xarray as xr
 
 import ratd
 from ratd.base.materials import MATERIALS
-from ratd.experiments.compression import losses, strength
+from ratd.experiments.compression import losses, pairs, strength
 from ratd.experiments.compression.monomers import derived_pressure
 from ratd.experiments.compression.strain import LABELS
 from ratd.experiments.compression.tables import BIN, bins, in_bins, mean_rolling_energy
@@ -300,3 +300,15 @@ def test_the_part_of_the_work_that_goes_one_way_is_that_between_two_filling_fact
     table["dissipated_rolling"] = (("seed_number", "phi_bin"), 0.25 * of_seed * x + [[0.0], [1.0], [5.0]])
     fit = losses.part_of_work(table, "rolling", 0.01, 0.02)
     assert fit.value == pytest.approx([0.25]) and fit.error == pytest.approx([0.0], abs=1e-9)
+
+
+def test_clusters_that_met_copies_stand_beside_those_that_met_others():
+    """Means over each other, and what the mean of ten single ones is known to."""
+    others = table_of(lambda phi: 0.8 * P_0 * phi**3, seeds=5)
+    copies = table_of(lambda phi: P_0 * phi**3, seeds=400, scatter=0.5)
+    found = pairs._of_copies({"copies_4096": copies, "rate_1e-6": others})
+    mean, spread = np.exp(0.125), np.sqrt(np.exp(0.25) - 1.0)
+    assert found["copies_4096.over_others_0.05"].value == pytest.approx(mean / 0.8, rel=0.06)
+    assert found["copies_4096.over_others_0.05"].error == pytest.approx(mean * spread / 20 / 0.8, rel=0.15)
+    assert found["copies_4096.of_ten_0.05"] == pytest.approx(spread / 10**0.5, rel=0.15)
+    assert pairs._of_copies({"copies_4096": copies}) == {}

@@ -40,6 +40,8 @@ BESIDE = {"k_n": SMALL, "xi": SMALL, "steps": "explicit", "explicit_k_n": "expli
 """What a set is compared with, by the beginning of its name; all others with the base set."""
 DENSE = ("equal", "k_n_10", "k_n_0")
 """Sets of the clusters of `SMALL` up to high filling factors, at another rate or with another damping."""
+COPIES = {"copies_16384": "loose_16384", "copies_4096": "rate_1e-6"}
+"""Sets of clusters that met copies of themselves as they grew -> those that met others, at the same rate."""
 FEW = ("silicate_16384", "n_16384")
 """A set of few clusters, and one of many of the same size."""
 
@@ -88,7 +90,7 @@ def of_pairs(sets):
     for name in ("base", SMALL):
         if {name, SLOWEST[0]} <= set(sets):
             found |= _by_size(sets, name, SLOWEST[0], (0.01, 0.02), SLOWEST[0])
-    return found | _dense(sets) | _of_few(sets)
+    return found | _dense(sets) | _of_few(sets) | _of_copies(sets)
 
 
 def _dense(sets):
@@ -98,6 +100,19 @@ def _dense(sets):
         if {name, SMALL} <= set(sets):
             found[f"{name}.dense"] = measured(compared(sets[name], sets[SMALL], 0.25, 0.36))
             found[f"{name}.dense_0.48"] = _of_same(sets[name], sets[SMALL], 0.48)
+    return found
+
+
+def _of_copies(sets):
+    """Pressures of clusters that met copies of themselves, over those of clusters that met others."""
+    found = {}
+    for name, other in COPIES.items():
+        if {name, other} <= set(sets):
+            last = min(sets[each]["phi"].values[-1] for each in (name, other))
+            for phi in (phi for phi in (0.005, 0.01, 0.02, 0.03, 0.05, 0.1) if phi * NEAR < last):
+                found[f"{name}.over_others_{phi:g}"] = _of_all(sets[name], sets[other], phi)
+                # what the mean of as many as the paper has is known to
+                found[f"{name}.of_ten_{phi:g}"] = measured(scatter_at(sets[name], phi)).value / math.sqrt(10.0)
     return found
 
 

@@ -53,6 +53,11 @@ def verdicts(values, sets):
         found["loose_line"] = "below" if below(values["loose_16384.ratio_0.005"], values["loose_16384.n"]) else "on"
         over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
         found["slow_enough"] = "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in over) else "another"
+    copies = [own for name, own in values.items() if name.startswith("copies_4096.over_others_")]
+    if copies:
+        found["copies_mean"] = (
+            "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in copies) else "another"
+        )
     if "short_16384.over_0.01" in values:
         off = max(abs(values[f"short_16384.over_{phi}"].value - 1.0) for phi in (0.005, 0.01))
         found["short_steps"] = "less than a tenth" if off < 0.1 else "a tenth or more"
