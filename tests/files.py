@@ -6,9 +6,11 @@ import xarray as xr
 from ratd.aggregates import files as grain_files
 from ratd.aggregates.grain import Grain
 from ratd.base.materials import MATERIALS
+from ratd.experiments.made_with import made_with
 from ratd.experiments.spin_up import run_files
 from ratd.experiments.spin_up.files import END_REASONS, RUN_VALUES
 from ratd.laws.contact_constants import equilibrium_compression
+from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline import blocks, io, kinds
 
 
@@ -43,7 +45,6 @@ def make_run(seed=0, n_records=4, n_fragments=2, n_snapshots=0, n_monomers=3):
     run.attrs = numbers | {
         "seed": seed,
         "end_reason": END_REASONS[seed % 2],
-        "material": "q-S",
         "type": "BA",
         "drive": "prescribed",
         "spin_up_law": "quasi-static",
@@ -57,6 +58,7 @@ def make_run(seed=0, n_records=4, n_fragments=2, n_snapshots=0, n_monomers=3):
         "coriolis": "exact",
         "damping": "implicit",
         "timestep_factor": 0.05,
+        **made_with(jkr(), [MATERIALS["q-S"]]),
     }
     return run
 

@@ -26,8 +26,8 @@ def run_row(run):
     """
     flat = [name for name in run.variables if run[name].dims == ("snapshot", "monomer")]
     row = run.drop_vars(flat)
-    # a file has the constants of the material once, and tells its source and law in other words
-    row.attrs = {name: value for name, value in run.attrs.items() if name not in (*MATERIAL, "source", "law")}
+    # which a file has once, beside the rows
+    row.attrs = {name: value for name, value in run.attrs.items() if name not in MATERIAL}
     for name in flat:
         row[name] = ("snapshot_monomer", run[name].values.ravel(), run[name].attrs)
     return row
@@ -44,10 +44,11 @@ def runs(dataset):
     Returns
     -------
     list of xarray.Dataset
-        As `ratd.spin_up` returns them, without ``source`` and ``law``.
+        As `ratd.spin_up` returns them; ``law`` is not in files of before ratd named it there.
     """
     result = []
-    about = constants_of(material_of(dataset))
+    told = {name: dataset.attrs[name] for name in ("source", "law") if name in dataset.attrs}
+    about = constants_of(material_of(dataset)) | told
     for row in rows(dataset, "spinup"):
         flat = [name for name in row.variables if row[name].dims == ("snapshot_monomer",)]
         run = row.drop_vars(flat)
