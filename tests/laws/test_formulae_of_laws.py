@@ -14,6 +14,7 @@ from ratd.laws.contact_constants import (
     pull_off_force,
     reduced_radius,
 )
+from ratd.laws.derjaguin_muller_toporov import impact_duration
 from ratd.laws.material_pair import material_pair, material_row
 
 MATERIAL = MATERIALS["q-S"]
@@ -226,3 +227,16 @@ def test_constants_of_two_materials():
     rigid = silica.copy()
     rigid[1] *= 1e12
     assert material_pair(ice, rigid).reduced_modulus == pytest.approx(2 * MATERIALS["ice"].reduced_modulus, rel=1e-9)
+
+
+def test_an_impact_takes_the_time_that_its_integration_takes():
+    """m x'' = -(4/3) E* sqrt(R) x^1.5 from x = 0 at speed v until x = 0 again, by short steps."""
+    mass, radius, modulus, speed = 3e-18, 5e-8, 3e10, 20.0
+    stiffness = 4.0 / 3.0 * modulus * math.sqrt(radius)
+    overlap, velocity, time, step = 0.0, speed, 0.0, 1e-14
+    while overlap >= 0.0:
+        velocity -= 0.5 * step * stiffness / mass * overlap**1.5
+        overlap += step * velocity
+        velocity -= 0.5 * step * stiffness / mass * max(overlap, 0.0) ** 1.5
+        time += step
+    assert impact_duration(mass, radius, modulus, speed) == pytest.approx(time, rel=2e-3)

@@ -8,10 +8,11 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import new_state
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import reduced_radius
+from ratd.laws.derjaguin_muller_toporov import impact_duration
 from ratd.laws.dmt_with_friction import DMT
 from ratd.laws.jkr_with_springs import JKR
 
-__all__ = ["STEPS_OF_IMPACT", "impact_duration", "leapfrog_for"]
+__all__ = ["STEPS_OF_IMPACT", "impact_step", "leapfrog_for"]
 
 HOW = {"timestep_factor": 0.125, "damping": "implicit"}
 HOW_OF_DMT = {"timestep_factor": 0.03, "damping": "explicit"}
@@ -21,26 +22,11 @@ STEPS_OF_IMPACT = 100
 50 m/s; so many leave the speed of rebound within 5 % of the limit of short steps (docs/model/engine.md)."""
 
 
-def impact_duration(reduced_mass, radius, modulus, speed):
-    """Time for which two elastic spheres touch that meet head-on, without adhesion.
-
-    Parameters
-    ----------
-    reduced_mass : float
-        Of the two [kg].
-    radius : float
-        Reduced radius [m].
-    modulus : float
-        Reduced modulus E* [Pa].
-    speed : float
-        At which they meet [m/s].
-
-    Returns
-    -------
-    float
-        [s]; K. L. Johnson, Contact Mechanics (1985), Eq. 11.24.
-    """
-    return 2.87 * (reduced_mass**2 / (radius * modulus**2 * speed)) ** 0.2
+def impact_step(radius, material, speed):
+    """The step [s] with which the impact of two equal spheres of a radius [m] takes `STEPS_OF_IMPACT` steps."""
+    mass = 0.5 * sphere_mass(radius, material.density)
+    duration = impact_duration(mass, reduced_radius(radius, radius), material.reduced_modulus, speed)
+    return duration / STEPS_OF_IMPACT
 
 
 def leapfrog_for(law, radius, materials, velocity, *, timestep=None, timestep_factor=None, damping=None):
@@ -70,18 +56,15 @@ def leapfrog_for(law, radius, materials, velocity, *, timestep=None, timestep_fa
         how["timestep_factor"] = timestep_factor
     elif timestep is None and velocity is not None and isinstance(law, DMT | JKR):
         speed = float(np.linalg.norm(np.ptp(velocity, axis=0)))
-        sizes = {radius.min(), radius.max()}
-        parts = [_part_of_impact(a, material, law, speed) for a in sizes for material in materials]
-        how["timestep_factor"] = min(how["timestep_factor"], *parts)
+        if speed > 0.0:
+            sizes = {radius.min(), radius.max()}
+            parts = [_part_of_impact(a, material, law, speed) for a in sizes for material in materials]
+            how["timestep_factor"] = min(how["timestep_factor"], *parts)
     return leapfrog(timestep=timestep, **how)
 
 
 def _part_of_impact(radius, material, law, speed):
-    """The factor with which the impact of two equal spheres takes `STEPS_OF_IMPACT` steps."""
-    if speed == 0.0:
-        return np.inf
-    mass, modulus = 0.5 * sphere_mass(radius, material.density), material.reduced_modulus
-    duration = impact_duration(mass, reduced_radius(radius, radius), modulus, speed)
+    """The factor of the time of a contact that gives `impact_step`."""
     apart = np.array([[0.0, 0.0, 0.0], [3.0 * radius, 0.0, 0.0]])
     pair = new_state(apart, np.full(2, radius), material, (), law, open_space(), leapfrog(timestep_factor=1.0))
-    return duration / (STEPS_OF_IMPACT * float(pair.scalar[DT]))
+    return impact_step(radius, material, speed) / float(pair.scalar[DT])

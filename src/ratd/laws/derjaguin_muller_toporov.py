@@ -41,6 +41,28 @@ def vibration_period(reduced_mass, hertz_stiffness, equilibrium_overlap):
     return 2.0 * math.pi * math.sqrt(reduced_mass / (1.5 * hertz_stiffness * math.sqrt(equilibrium_overlap)))
 
 
+def impact_duration(reduced_mass, reduced_radius, reduced_modulus, speed):
+    """Time for which two elastic spheres touch that meet head-on, without adhesion.
+
+    Parameters
+    ----------
+    reduced_mass : float
+        Of the two [kg].
+    reduced_radius : float
+        [m]
+    reduced_modulus : float
+        E* [Pa].
+    speed : float
+        At which they meet [m/s].
+
+    Returns
+    -------
+    float
+        [s]; K. L. Johnson, Contact Mechanics (1985), Eq. 11.24.
+    """
+    return 2.87 * (reduced_mass**2 / (reduced_radius * reduced_modulus**2 * speed)) ** 0.2
+
+
 @jit(forceinline=True)
 def dmt_state(compression):
     """s = sqrt(r/r0) of a contact from its compression delta/delta_0 of at least 0: (delta/(3 delta_0))^(1/4)."""

@@ -299,11 +299,7 @@ def section(config, name, schemas="config/schema"):
     shared = {key: value for key, value in config.items() if key in layout["required"]}
     *_, materials = together(
         lambda: check_layout(config, layout, "config"),
-        # what is no mapping of keys the first one tells
-        lambda: (
-            isinstance(own, dict)
-            and check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,))
-        ),
+        lambda: check_layout(own, read_yaml(schemas / f"{name}.schema.yaml"), "config", inside=(name,)),
         lambda: check_results_folder(shared.get("results")),
         lambda: _materials_of(shared.get("materials_file")),
     )

@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.materials import sphere_mass
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
-from ratd.experiments.leapfrog_for import STEPS_OF_IMPACT, impact_duration
+from ratd.experiments.leapfrog_for import impact_step
 from ratd.geometry.box import open_space
 from ratd.laws.contact_constants import reduced_radius, touching_distance
 from ratd.laws.contact_fields import STEP
@@ -75,10 +75,8 @@ def step_of(radius, material, law, velocity):
     least = float(np.min(radius))
     steps = [PARTS[name] * time for name, time in _times(radius, material, law).items()]
     if isinstance(law, JKR):
-        # that of DMT is shorter anyhow, by its damping and its period
-        mass = 0.5 * sphere_mass(least, material.density)
-        impact = impact_duration(mass, reduced_radius(least, least), material.reduced_modulus, velocity)
-        steps.append(impact / STEPS_OF_IMPACT)
+        # DMT has its period and its damping, which is strong, in `PARTS`
+        steps.append(impact_step(least, material, velocity))
     return min(*steps, FARTHEST * least / velocity)
 
 

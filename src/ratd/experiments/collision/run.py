@@ -165,18 +165,8 @@ def collide(
     radius = np.concatenate([a.radius, b.radius])
     if timestep is None:
         timestep = step_of(radius, material, law, velocity)
-    elif not is_number(timestep) or not timestep > 0.0:
-        raise InputError(f"timestep is {timestep!r}; it must be a number above 0, in s.")
-    elif not timestep <= (longest := longest_step(radius, material, law)):
-        raise InputError(
-            f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
-        )
-    nearer = FARTHEST * radius.min()
-    if velocity * timestep > nearer * (1.0 + 1e-12):
-        raise InputError(
-            f"velocity is {velocity:g} m/s: in a timestep of {timestep:.3g} s the clusters come nearer by more than "
-            f"{FARTHEST:.0%} of the smallest radius; take a timestep of at most {nearer / velocity:.2g} s."
-        )
+    else:
+        _check_timestep(timestep, radius, material, law, velocity)
     if not isinstance(relaxed, bool):
         raise InputError(f"relaxed is {relaxed!r}; it must be True or False.")
     if not relaxed:
@@ -221,6 +211,22 @@ def collide(
         "balance": float(np.abs(run["residual"].values).max() / energy),
     }
     return run
+
+
+def _check_timestep(timestep, radius, material, law, velocity):
+    """One sentence for a step that a user gives and that is too long."""
+    if not is_number(timestep) or not timestep > 0.0:
+        raise InputError(f"timestep is {timestep!r}; it must be a number above 0, in s.")
+    longest, nearer = longest_step(radius, material, law), FARTHEST * radius.min()
+    if not timestep <= longest:
+        raise InputError(
+            f"timestep is {timestep:.3g} s; the smallest sphere, {radius.min():.3g} m, allows at most {longest:.3g} s."
+        )
+    if velocity * timestep > nearer:
+        raise InputError(
+            f"velocity is {velocity:g} m/s: in a timestep of {timestep:.3g} s the clusters come nearer by more than "
+            f"{FARTHEST:.0%} of the smallest radius; take a timestep of at most {nearer / velocity:.2g} s."
+        )
 
 
 def _check(a, b, velocity, impact_parameter, seed, gap):

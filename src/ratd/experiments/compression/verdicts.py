@@ -46,18 +46,16 @@ def verdicts(values, sets):
             both = [values[f"slow_16384.{over}_{phi}"] for over in ("over", "over_all")]
             sure = all(below(own, n) for own in both)
             found[f"slow_{phi}"] = "show" if sure else "suggest" if both[0].value < 1.0 else "deny"
-        found["slow_0.03"] = "the same" if abs(late.value - 1.0) < 2.0 * late.error else "another"
+        found["slow_0.03"] = _alike([late])
         steeper = values["slow_16384.steeper_low"]
         found["slow_steeper"] = "more" if steeper.value > _sure(steeper, n) else "no more"
     if "slow_16384.over_next_0.01" in values:
         found["loose_line"] = "below" if below(values["loose_16384.ratio_0.005"], values["loose_16384.n"]) else "on"
         over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
-        found["slow_enough"] = "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in over) else "another"
+        found["slow_enough"] = _alike(over)
     copies = [own for name, own in values.items() if name.startswith("copies_4096.over_others_")]
     if copies:
-        found["copies_mean"] = (
-            "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in copies) else "another"
-        )
+        found["copies_mean"] = _alike(copies)
     if "short_16384.over_0.01" in values:
         off = max(abs(values[f"short_16384.over_{phi}"].value - 1.0) for phi in (0.005, 0.01))
         found["short_steps"] = "less than a tenth" if off < 0.1 else "a tenth or more"
@@ -82,6 +80,11 @@ def verdicts(values, sets):
     if "silicate" in sets:
         found["silicate_300"] = "agrees" if abs(values["silicate.phi_300"].value - 0.24) < 0.02 else "differs"
     return found
+
+
+def _alike(ratios):
+    """Whether pressures are the same, from their ratios: all within two errors of 1."""
+    return "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in ratios) else "another"
 
 
 def _sure(own, n):

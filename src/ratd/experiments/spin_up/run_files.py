@@ -58,7 +58,8 @@ def runs(dataset):
             shape = row.sizes["snapshot"], row.sizes["monomer"]
             for name in flat:
                 run[name] = (("snapshot", "monomer"), row[name].values.reshape(shape), row[name].attrs)
-        result.append(run.assign_attrs(about))
+        run.attrs |= about
+        result.append(run)
     return result
 
 
