@@ -7,7 +7,14 @@ from ratd.aggregates.strength import (
     compressive_strength_tatsuuma2023,
     filling_factor_guettler2009,
 )
-from ratd.experiments.compression.figures.common import COLOURS, read_sets, seeds_text, strain_text
+from ratd.experiments.compression.figures.common import (
+    COLOURS,
+    FEWEST,
+    looks_of,
+    read_sets,
+    seeds_text,
+    strain_text,
+)
 from ratd.experiments.compression.strength import mean_pressure
 from ratd.pictures.style import GREY, ONE_COLUMN, logarithmic, new_figure, styled
 
@@ -16,16 +23,18 @@ READ_OFF = {"Kataoka et al. 2013": 0.24, "Seizinger et al. 2012": 0.21, "Güttle
 
 
 @styled
-def figure13(table):
-    """phi against P, mean of the runs with one standard error of P, beside fits, and the values named at 300 Pa."""
-    title = f"{table.attrs['material']}, {seeds_text(table)}, {strain_text(table)}"
-    figure = new_figure(ONE_COLUMN, 1.25 * ONE_COLUMN, title)
+def figure13(tables):
+    """phi against P, means of sets of one material with one standard error of P, fits, and values named at 300 Pa."""
+    figure = new_figure(ONE_COLUMN, 1.3 * ONE_COLUMN, f"{tables[0].attrs['material']}, {strain_text(tables[0])}")
     axes = figure.subplots()
-    mean, error = mean_pressure(table)
-    phi = table["phi"].values
-    P_0 = table["rolling_pressure"].values[0]
-    axes.plot(mean, phi, color=COLOURS[0], label="here")
-    axes.fill_betweenx(phi, np.maximum(mean - error, 0.03 * mean), mean + error, color=COLOURS[0], alpha=0.2, lw=0)
+    for table, (colour, dash) in zip(tables, looks_of(tables), strict=True):
+        mean, error = mean_pressure(table)
+        axes.plot(mean, table["phi"], color=colour, ls=dash, label=f"here, {seeds_text(table)}")
+        if table.sizes["seed_number"] >= FEWEST:
+            low = np.maximum(mean - error, 0.03 * mean)
+            axes.fill_betweenx(table["phi"], low, mean + error, color=colour, alpha=0.2, lw=0)
+    phi = np.unique(np.concatenate([table["phi"].values for table in tables]))
+    P_0 = tables[0]["rolling_pressure"].values[0]
     axes.plot(compressive_strength_kataoka2013(phi, P_0), phi, color="black", lw=0.8, label=r"$P_0\phi^3$")
     line = compressive_strength_tatsuuma2023(phi, P_0)
     axes.plot(line, phi, color=COLOURS[1], ls="--", label="Tatsuuma et al. 2023 (recalled)")
@@ -44,4 +53,4 @@ def figure13(table):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return figure13(read_sets(files)[0])
+    return figure13(read_sets(files))
