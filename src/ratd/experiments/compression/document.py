@@ -53,8 +53,8 @@ _ONE_PULL = ("n_monomers", "seed", "phi_compressed", "strain_rate", "n_axes", "u
 def collect(results, data=DATA):
     """Take the tables of a folder of results beside the document, those that are finished.
 
-    What is made in pieces grows: the clusters of a new table are added to those that are there, or take the place of
-    those with the same seeds; so do pulls.
+    Positions stay where those that are there are of a larger cluster. What is made in pieces grows: the clusters of a
+    new table are added to those that are there, or take the place of those with the same seeds; so do pulls.
 
     Parameters
     ----------
@@ -79,6 +79,10 @@ def collect(results, data=DATA):
         kind = "compression_snapshots" if name == "snapshots.nc" else "compression_set"
         target = data / name if kind == "compression_snapshots" else data / "sets" / name
         table = io.read(results / "compression" / name, kind)
+        if kind == "compression_snapshots" and target.is_file():
+            there = io.read(target, kind)
+            if there.sizes["monomer"] > table.sizes["monomer"]:
+                continue
         if kind == "compression_set" and target.is_file():
             there = io.read(target, kind)
             left = ~np.isin(there["seed"].values, table["seed"].values)

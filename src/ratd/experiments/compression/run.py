@@ -48,7 +48,7 @@ LONG_STEPS = LongSteps()
 BALANCE = {0.0: 0.2, 0.1: 0.005, 0.3: 0.002}
 """From this filling factor on, the balance of energy is to hold to this part of the work of the box, or of what was
 dissipated, with explicit steps; where long ones were taken, the part of these may be `LONG_BALANCE` of theirs."""
-LONG_BALANCE = {0.0: 0.2, 0.05: 0.05, 0.1: 0.02}
+LONG_BALANCE = {0.0: 0.2, 0.05: 0.02, 0.1: 0.005, 0.3: 0.002}
 EVENTS = 100
 """Contacts whose energy is taken in place of both where they are less."""
 REMEDY = "take a lower strain_rate, in Python also a smaller timestep_factor; there balance=False lets it run on"

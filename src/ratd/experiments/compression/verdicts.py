@@ -7,7 +7,7 @@ from scipy.stats import t as student
 from ratd.experiments.compression.losses import WAYS
 from ratd.experiments.compression.pairs import BY_SIZE, HIGH, SLOW_RATES, beside
 
-__all__ = ["below", "verdicts"]
+__all__ = ["below", "half_width", "verdicts"]
 
 
 def verdicts(values, sets):
@@ -35,7 +35,7 @@ def verdicts(values, sets):
     if "explicit_k_n_0.paired" in values:
         n, ratio, steeper = (values[f"explicit_k_n_0.{name}"] for name in ("n", "paired", "paired_exponent"))
         found["undamped_pressure"] = "certain" if below(ratio, n) else "not certain"
-        found["undamped_exponent"] = "certain" if steeper.value + _sure(steeper, n) < 0.0 else "not certain"
+        found["undamped_exponent"] = "certain" if steeper.value + half_width(steeper, n) < 0.0 else "not certain"
     if "slow_16384.over_0.03" in values:
         n = values["slow_16384.n"]
         late = values["slow_16384.over_0.03"]
@@ -48,7 +48,7 @@ def verdicts(values, sets):
             found[f"slow_{phi}"] = "show" if sure else "suggest" if both[0].value < 1.0 else "deny"
         found["slow_0.03"] = _alike([late])
         steeper = values["slow_16384.steeper_low"]
-        found["slow_steeper"] = "more" if steeper.value > _sure(steeper, n) else "no more"
+        found["slow_steeper"] = "more" if steeper.value > half_width(steeper, n) else "no more"
     if "slow_16384.over_next_0.01" in values:
         found["loose_line"] = "below" if below(values["loose_16384.ratio_0.005"], values["loose_16384.n"]) else "on"
         over = [values[f"slow_16384.over_next_{phi:g}"] for phi in (0.005, 0.01)]
@@ -88,14 +88,14 @@ def _alike(ratios):
     return "the same" if all(abs(own.value - 1.0) < 2.0 * own.error for own in ratios) else "another"
 
 
-def _sure(own, n):
+def half_width(own, n):
     """Half the width of the range that holds a mean of `n` clusters in 19 cases of 20 (Student's t)."""
     return student.ppf(0.975, n - 1) * own.error
 
 
 def below(own, n):
     """Whether a ratio of `n` clusters is surely below 1."""
-    return own.value + _sure(own, n) < 1.0
+    return own.value + half_width(own, n) < 1.0
 
 
 def _beside_3(exponent):
