@@ -107,9 +107,10 @@ def sample_moment(length, radii):
     return float(np.interp(length, lengths, q, left=np.nan, right=np.nan))
 
 
-def free_samples(n, number=400):
+def free_samples(n, number=400, smallest=SMALLEST, largest=LARGEST):
     """Samples of n radii each, of whatever mass comes, list of (n,) array [m]; what they scatter by is no choice."""
-    return [mrn(n, seed, mass_within=None, length_within=None) for seed in range(number)]
+    law = {"smallest": smallest, "largest": largest, "mass_within": None, "length_within": None}
+    return [mrn(n, seed, **law) for seed in range(number)]
 
 
 def part_above(radius, smallest=SMALLEST, largest=LARGEST):

@@ -1,11 +1,20 @@
 """The plan of the collisions: cells, rotations, files, settings, and what is refused."""
 
 import copy
+import itertools
 
+import numpy as np
+import pandas as pd
 import pytest
 import yaml
 
+from ratd.aggregates.mrn import mrn
 from ratd.base.errors import InputError
+from ratd.experiments.collision.figures.dissipation import dissipation
+from ratd.experiments.collision.figures.figure2 import figure2
+from ratd.experiments.collision.figures.figure5 import figure5
+from ratd.experiments.collision.figures.figure6 import figure6
+from ratd.experiments.collision.figures.figure8 import figure8
 from ratd.experiments.collision.plan import RUNS, check
 from ratd.experiments.collision.stages import law_from, radii_from
 from ratd.pipeline.config import merge
@@ -13,6 +22,7 @@ from tiny_pipeline import ROOT
 
 FILES = [ROOT / "config" / f"{name}.yaml" for name in ("config", "collision")]
 SCHEMAS = ROOT / "config" / "schema"
+QUANTITIES = ("X", "N_s", "energy_half", "energy_end", "by_damping", "by_sliding", "by_rolling", "by_twisting")
 
 
 def config(**own):
@@ -70,6 +80,43 @@ def test_the_paper():
     assert paper.figure_input("figure3")["runs"] == [
         RUNS.format(law="velocity", cluster="mrn", sample=1, velocity=15, impact=0)
     ]
+
+
+def table_of(paper):
+    """A table with a collision for each cell and two rotations, as if all that is planned had been computed."""
+    rows = []
+    for cell, seed in itertools.product(paper.cells, (0, 1)):
+        radius = 1e-9 * paper.config["clusters"][cell.cluster].get("radius_nm", 0)
+        own = {"largest_radius": radius or 2e-6, "mean_sphere_radius": radius or 9e-8, "seed": seed}
+        own |= {name: getattr(cell, name) for name in ("law", "cluster", "sample", "velocity", "impact_parameter")}
+        rows.append({"second_contact": 0.5, "largest_share": 0.1} | dict.fromkeys(QUANTITIES, 0.4 + 0.1 * seed) | own)
+    return pd.DataFrame(rows)
+
+
+def test_the_figures_of_all_that_the_paper_plans_draw():
+    """It has more velocities than there are markers, and a user may have more samples."""
+    paper = check(config(), SCHEMAS)
+    table = table_of(paper)
+    own = paper.config["figures"]
+    many = [table.assign(sample=k) for k in range(12)]
+    for figure in (
+        figure5(table, own["law"]),
+        figure6(pd.concat(many), own["law"], own["mrn"]),
+        figure8(table, own["law"], own["mrn"]),
+        dissipation(table, own["law"], [own["twin"], own["mrn"]]),
+    ):
+        figure.canvas.draw()
+        assert all(axes.has_data() for axes in figure.axes)
+
+
+def test_figures_of_the_law_have_its_ends():
+    ends = {"smallest_nm": 100, "largest_nm": 800}
+    other = check(config(clusters={"mrn": ends}), SCHEMAS)
+    samples = [mrn(2000, seed, smallest=1e-7, largest=8e-7) for seed in (1, 2)]
+    assert other.figure("figure2")["ends"] == pytest.approx([1e-7, 8e-7])
+    (law,) = [line for line in figure2(samples, 1e-7, 8e-7).axes[0].lines if line.get_label() == "law"]
+    # L_5 is the geometric mean of the ends
+    assert np.interp(5.0, *law.get_data()) == pytest.approx(1e6 * np.sqrt(8e-14), rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["quick", "collision_default", "collision_study"])

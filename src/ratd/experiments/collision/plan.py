@@ -380,9 +380,9 @@ class Plan:
             settings = {"rotation": shown["rotation"] if shown else None}
             return settings | ({"spacing": SPACING[name]} if name in SPACING else {})
         own = dict(self.config["figures"])
-        law = self.config["clusters"].get(own["mrn"], {})
-        if name == "figure1" and law.get("radii") == "mrn":
-            own["ends"] = [law["smallest_nm"] * NM, law["largest_nm"] * NM]
+        cluster = self.config["clusters"].get(own["mrn"], {})
+        if FIGURES[name][1] == "built" and cluster.get("radii") == "mrn":
+            own["ends"] = [cluster["smallest_nm"] * NM, cluster["largest_nm"] * NM]
         return own
 
     def snapshot_file(self, one):

@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 
 from ratd.experiments.collision.figures.look import (
-    MARKERS,
     MRN_STYLE,
     SMALLER,
     cluster_text,
     collisions_of,
     colour_of,
     law_text,
+    marker,
     marker_of,
     plot_means,
     radius_label,
@@ -66,7 +66,7 @@ def figure6(table, law, mrn, cut=None):
                 plot_means(axes, part, quantity, radius_label(radius), **look)
         for k, (sample, part) in enumerate(own.groupby("sample")):
             place = part["velocity"] + ASIDE * (k - 1)
-            axes.plot(place, part[quantity], **SINGLE, marker=MARKERS[k], label=f"sample {sample:g}")
+            axes.plot(place, part[quantity], **SINGLE, marker=marker(k), label=f"sample {sample:g}")
         plot_means(axes, own, quantity, cluster_text(mrn), **MRN_STYLE, zorder=5)
         if len(without):
             plot_means(axes, without, quantity, cluster_text(cut), **CUT, zorder=4)
@@ -76,7 +76,7 @@ def figure6(table, law, mrn, cut=None):
     shares = own.groupby("sample")["largest_share"].first()
     for k, share in enumerate(shares):
         right.axhline(1 - share, color=HIGHLIGHT, lw=1.2, zorder=0)
-        right.plot(0.5, 1 - share, marker=MARKERS[k], **SINGLE)
+        right.plot(0.5, 1 - share, marker=marker(k), **SINGLE)
     right.text(1.5, 1 - shares.min() + 0.01, "all but the largest spheres", color="#8a5a00", va="bottom")
     left.set_ylabel("agglomeration $X$")
     right.set_ylabel("fragmentation $N_\\mathrm{s}$")

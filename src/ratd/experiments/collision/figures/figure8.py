@@ -3,11 +3,11 @@
 import numpy as np
 
 from ratd.experiments.collision.figures.look import (
-    MARKERS,
     cluster_text,
     collisions_of,
     colour_of_velocity,
     law_text,
+    marker,
 )
 from ratd.experiments.collision.fragmentation import mean_and_error, means
 from ratd.experiments.collision.likeness import of_equal_spheres
@@ -45,7 +45,7 @@ def figure8(table, law, mrn):
         part = equal[equal["velocity"] == velocity].assign(velocity=lambda t: t["largest_radius"])
         radius, mean, error = means(part, "energy_half")
         axes.errorbar(
-            radius * 1e6, mean, error, color=colour, marker=MARKERS[k], capsize=1.5, label=f"{velocity:g} m s$^{{-1}}$"
+            radius * 1e6, mean, error, color=colour, marker=marker(k), capsize=1.5, label=f"{velocity:g} m s$^{{-1}}$"
         )
         same = own[own["velocity"] == velocity]
         if len(same):
@@ -54,7 +54,7 @@ def figure8(table, law, mrn):
             # the errors side by side, to the right of all radii
             at = equal["largest_radius"].max() * 1e6 * (1.05 + 0.018 * k)
             axes.errorbar(
-                at, mean, np.nan_to_num(error), color=colour, marker=MARKERS[k], mfc="white", capsize=1.5, ls="none"
+                at, mean, np.nan_to_num(error), color=colour, marker=marker(k), mfc="white", capsize=1.5, ls="none"
             )
     axes.plot([], [], color=GREY, lw=0.8, ls=(0, (4, 2)), label=f"{cluster_text(mrn)} (open marker)")
     axes.set(xlabel="radius of equal spheres [µm]", ylabel="kinetic energy at 0.5 µs over $E_0$", ylim=(0, None))

@@ -69,7 +69,12 @@ def colour_of_velocity(velocity):
 
 def marker_of(radius):
     """Marker of a radius, likewise."""
-    return MARKERS[_place(radius)]
+    return marker(_place(radius))
+
+
+def marker(k):
+    """Marker of the curve or sample of number `k`; the first ones come again where there are more."""
+    return MARKERS[k % len(MARKERS)]
 
 
 def _place(radius):

@@ -21,7 +21,7 @@ def high_density(tables):
         mean, error = mean_pressure(table)
         every = np.flatnonzero(phi > SHOWN[0])[::2]
         line = P_0 * phi**3
-        style = {"color": COLOURS[k], "marker": "os^"[k % 3], "ls": "none"}
+        style = {"color": COLOURS[k % 5], "marker": "os^"[k % 3], "ls": "none"}
         label = f"{table.attrs['material']}, {seeds_text(table)}"
         axes.errorbar(phi[every], (mean / line)[every], (error / line)[every], label=label, **style)
         high = min(LIMIT_RANGE[1], phi[np.isfinite(mean)].max())
@@ -29,7 +29,7 @@ def high_density(tables):
         c, largest = fit_with_limit(table, high=high).value
         fitted = c * compressive_strength_tatsuuma2023(x, 1.0, largest) / x**3
         text = rf"{c:.2f} $(1 - \phi/{largest:.2f})^{{-3}}$"
-        axes.plot(x, fitted, color=COLOURS[k], ls=DASHES[2 * k], lw=0.8, label=text)
+        axes.plot(x, fitted, color=COLOURS[k % 5], ls=DASHES[2 * k % 5], lw=0.8, label=text)
     x = np.geomspace(*SHOWN, 60)
     recalled = compressive_strength_tatsuuma2023(x, 1.0) / x**3
     axes.plot(x, recalled, color="black", ls="--", lw=0.8, label="Tatsuuma et al. 2023, recalled")

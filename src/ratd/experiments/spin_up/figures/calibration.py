@@ -1,5 +1,7 @@
 """Where the literal drive starts to take a grain apart, against d omega/dt."""
 
+import itertools
+
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -12,7 +14,7 @@ from ratd.pipeline import io
 
 RUN, FIT = "#0072B2", "#D55E00"
 STEP_MARKERS = "so^Dv"
-"""Of the step factors, the shortest first."""
+"""Of the step factors, the shortest first; the first ones come again where there are more."""
 SPREAD = 1.02
 """Factor between the places of runs with the same d omega/dt."""
 
@@ -80,7 +82,7 @@ def _runs(axes, table):
         axes.plot(grain["place"], grain[ONSET], color=RUN, lw=0.5, zorder=1)
     look = {"color": RUN, "ls": "none", "elinewidth": 0.8, "capsize": 2, "ms": 3.5, "zorder": 3}
     handles = []
-    for factor, marker in zip(sorted(table["timestep_factor"].unique()), STEP_MARKERS, strict=False):
+    for factor, marker in zip(sorted(table["timestep_factor"].unique()), itertools.cycle(STEP_MARKERS), strict=False):
         here = table[(table["timestep_factor"] == factor) & table[ONSET].notna()]
         ends = (here[name].fillna(here[ONSET]) for name in ("omega_first_loss", "omega_mass_75"))
         axes.errorbar(here["place"], here[ONSET], bar_lengths(here[ONSET], *ends), marker=marker, **look)
