@@ -187,6 +187,31 @@ def test_a_run_goes_on_after_a_kill_with_the_same_bits(whole, tmp_path, monkeypa
     assert len(parts) == before + 8
 
 
+def test_a_run_that_goes_on_judges_its_steps_by_the_first_one(whole, tmp_path, monkeypatch):
+    """The step may have become short before the kill."""
+    firsts = []
+    monkeypatch.setattr(intervals, "CHECKPOINT", 0.0)
+    monkeypatch.setattr(intervals, "PROGRESS", 0.0)
+    monkeypatch.setattr(module, "CALL", 10)
+    monkeypatch.setattr(module, "_check_pace", lambda state, first_step: firsts.append(first_step))
+
+    def kill(done, to_go, row):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(checkpoint=tmp_path / "run.npz", progress=kill)
+    before, load = firsts[:], checkpoints.load
+
+    def shortened(path, key):
+        state, tables = load(path, key)
+        state.scalar[DT] *= 0.5
+        return state, tables
+
+    monkeypatch.setattr(checkpoints, "load", shortened)
+    run(checkpoint=tmp_path / "run.npz")
+    assert before and len(firsts) > len(before) and len(set(firsts)) == 1
+
+
 @pytest.mark.parametrize("speed", [1.0, 10.0, 50.0])
 @pytest.mark.parametrize("records", [1, 100, 400])
 def test_two_spheres_that_meet_keep_the_balance_with_the_default_step(speed, records):

@@ -187,7 +187,8 @@ def evolve(
     key = None if checkpoint is None else checkpoints.fingerprint(__name__, arrays, *settings, given)
     loaded = checkpoints.load(checkpoint, key)
     if loaded is not None:
-        state, rows, pictures = loaded[0], list(loaded[1]["rows"]), list(loaded[1]["pictures"])
+        state, tables = loaded
+        rows, pictures, first_step = list(tables["rows"]), list(tables["pictures"]), float(tables["first_step"])
     else:
         contacts = touching if contacts is None else contacts
         how = {"velocity": velocity, "spin": spin, "kind": kind}
@@ -197,11 +198,10 @@ def evolve(
             state.scalar[FASTEST] = np.linalg.norm(velocity, axis=1).max()
             limit_step(state, integrator.timestep_factor * radius.min())
         rows = [_row(state, law, box, None)]
-        pictures = [_picture(state)] if snapshot_every else []
+        pictures, first_step = [_picture(state)] if snapshot_every else [], state.scalar[DT]
     to_save, to_tell = intervals.Interval(intervals.CHECKPOINT), intervals.Interval(intervals.PROGRESS)
     foresee, pace = intervals.Interval(intervals.FORECAST), intervals.Pace(state.scalar[TIME])
     moved, checked = _moved(rows, rows[0]), 1
-    first_step = state.scalar[DT]
     parts = law, box, materials
     with attached("run", lambda error: _dataset(getattr(error, "state", state), rows, pictures, *parts)):
         while len(rows) <= records:
@@ -222,7 +222,7 @@ def evolve(
                         _check_balance(rows[checked], moved, balance)
                     checked += 1
             if checkpoint is not None and to_save.passed():
-                checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures)
+                checkpoints.save(checkpoint, key, state, rows=rows, pictures=pictures, first_step=first_step)
             if foresee is not None and foresee.passed():
                 now = state.scalar[TIME]
                 foresee = _warn_of_long(pace.to_go(duration - now, now), duration, state.scalar[DT])

@@ -65,8 +65,8 @@ def read_runs(path):
     -------
     list of xarray.Dataset
         As `ratd.spin_up`, `ratd.compress`, `ratd.stretch` or `ratd.collide` returned them. From files of ratd those of
-        compressions and pulls are without the state at their end, so that they cannot be pulled on, and collisions have
-        what their tables need, N_s and X among it.
+        compressions and pulls are without the state at their end and its step of time, so that they cannot be pulled
+        on, pulls also without radii, and collisions have what their tables need, N_s and X among it.
 
     Raises
     ------

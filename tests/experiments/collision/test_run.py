@@ -12,6 +12,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments import intervals
 from ratd.experiments.collision.approach import approach, first_touch
+from ratd.experiments.collision.files import collision_row
 from ratd.experiments.collision.laws import balance_of, longest_step, step_of
 from ratd.experiments.collision.run import at_rest, collide
 from ratd.experiments.collision.sticking import breaking_energy_of, parting_velocity, sticking_velocity
@@ -76,6 +77,10 @@ def test_two_different_clusters_and_the_other_law():
     masses = SMALL.mass.sum(), MIXED.mass.sum()
     assert run.attrs["impact_energy"] == pytest.approx(0.5 * masses[0] * masses[1] / sum(masses) * 4.0)
     assert run.n_contacts[-1] > run.n_contacts[0]
+    # the largest sphere of all is in the second cluster, and its part is that of this one's mass
+    row = collision_row(run)
+    assert row["largest_radius"].item() == MIXED.radius.max()
+    assert row["largest_share"].item() == pytest.approx(MIXED.mass.max() / masses[1], rel=1e-12)
 
 
 def test_built_clusters_are_at_rest_and_others_come_to_rest():

@@ -13,7 +13,7 @@ from ratd.base.materials import MATERIALS
 from ratd.experiments import intervals
 from ratd.experiments.command import several
 from ratd.experiments.compression import pull
-from ratd.experiments.compression.files import stretched_row
+from ratd.experiments.compression.files import run_row, stretched_row
 from ratd.experiments.compression.pull import pressed, pulled
 from ratd.experiments.compression.run import Cluster
 from ratd.experiments.compression.static import (
@@ -29,7 +29,7 @@ from ratd.experiments.compression.steps import STRAIN, longest_strain
 from ratd.experiments.compression.strain import strain_dataset
 from ratd.experiments.compression.stretch_command import show
 from ratd.laws.contact_constants import equilibrium_compression, pull_off_force
-from ratd.pipeline import io
+from ratd.pipeline import blocks, io
 from ratd.pipeline.provenance import provenance
 
 HOW = {"strain_rate": 3e-5, "until_phi": 0.25}
@@ -335,6 +335,23 @@ def test_what_is_no_aggregate_in_one_piece_is_refused(cluster):
         ratd.Grain(two, np.tile(cluster.radius, 2), "ice")
     with pytest.raises(ratd.InputError, match="overlap"):
         ratd.Grain([[0, 0, 0], [1e-7, 0, 0]], [1e-7, 1e-7], "ice")
+
+
+def test_compressions_and_pulls_come_back_from_their_files_as_they_were(run, tmp_path):
+    pulled = ratd.stretch(run, 3e-5)
+    for kind, row, made in (("compression", run_row, run), ("stretched", stretched_row, pulled)):
+        file = tmp_path / f"{kind}.nc"
+        io.write(file, blocks.block([row(made)], kind, MATERIALS["ice"]), kind)
+        (read,) = ratd.read_runs(file)
+        lacking = {name for name in made.variables if name not in read.variables}
+        # the state at the end, with its positions and, in pulls, radii, mass and step
+        assert all(name.startswith("state_") or name in ("position", "radius") for name in lacking)
+        for name in read.variables:
+            np.testing.assert_equal(read[name].values, made[name].values)
+        assert read["pressure_tensor"].sel(component="xx").equals(read["pressure_tensor"][:, 0])
+        different = {name for name, value in made.attrs.items() if read.attrs.get(name) != value}
+        assert different <= {"timestep", "mass"}, different
+    assert ratd.read_runs(tmp_path / "compression.nc")[0].attrs["mass"] == pytest.approx(run.attrs["mass"], rel=1e-12)
 
 
 def test_a_pulled_cluster_comes_apart(run):

@@ -328,6 +328,15 @@ def test_grains_without_the_mark_are_left_out(table):
     assert best["n_grains"].sel(type="BAM1").values.tolist() == [18, 18, 18]
     expected = fit_ensemble(table[table["seed"] != 3], n_bootstrap=5)
     np.testing.assert_allclose(best["A"].sel(type="BA"), expected["A"].sel(type="BA"), rtol=1e-12)
+    # nor do those without a size or contacts count
+    for name in ("a_eff", "n_contacts"):
+        gaps = table.astype({name: float})
+        gaps.loc[gaps["seed"] == 3, name] = np.nan
+        np.testing.assert_allclose(fit_ensemble(gaps, n_bootstrap=5)["A"], expected["A"], rtol=1e-12)
+    with pytest.raises(InputError, match="the columns a_eff, n_contacts, filling_factor, omega_disr, .* must hold numbers"):
+        fit_ensemble(table.astype({"omega_disr": object}).assign(omega_disr="fast"), n_bootstrap=5)
+    with pytest.raises(InputError, match="mean_monomer_radius is empty; give a radius in m, or 'own'"):
+        fit_ensemble(table, [], n_bootstrap=5)
 
 
 def test_other_marks_can_be_fitted(table):

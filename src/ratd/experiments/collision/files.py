@@ -292,6 +292,7 @@ def _values(run, found, several):
     mass = sphere_mass(radius, run.attrs["density"])
     owner = run["cluster"].values
     largest = [int(np.flatnonzero(owner == own)[np.argmax(radius[owner == own])]) for own in (0, 1)]
+    of_both = int(radius.argmax())
     label = run["piece"].values
     rest = mass.copy()
     rest[largest] = 0.0
@@ -315,8 +316,8 @@ def _values(run, found, several):
         "X_rest": (first - second) / rest.sum(),
         "N_s_rest": 1.0 - (first + second) / rest.sum(),
         "mean_sphere_radius": radius.mean(),
-        "largest_radius": radius.max(),
-        "largest_share": mass[largest[0]] / mass[owner == 0].sum(),
+        "largest_radius": radius[of_both],
+        "largest_share": mass[of_both] / mass[owner == owner[of_both]].sum(),
         "single_mass": float(found["piece_mass"].values[single].sum()),
         "balance": run.attrs["balance"],
     }

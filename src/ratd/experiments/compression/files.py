@@ -7,7 +7,9 @@ import numpy as np
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
+from ratd.base.materials import sphere_mass
 from ratd.experiments.compression.strain import LABELS, RECORDS
+from ratd.experiments.made_with import constants_of
 from ratd.observables.structure import radius_of_gyration
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
@@ -191,8 +193,15 @@ def runs(dataset):
         run = row.drop_vars("snapshot_position")
         shape = row.sizes["snapshot"], row.sizes["monomer"], 3
         run["snapshot_position"] = (("snapshot", "monomer", "axis"), flat.values.reshape(shape), flat.attrs)
-        found.append(run)
+        run = _as_returned(run, dataset)
+        found.append(run.assign_attrs(mass=float(sphere_mass(run["radius"].values, run.attrs["density"]).sum())))
     return found
+
+
+def _as_returned(run, file):
+    """A run with the labels of its dimensions and the constants of its material, which its file has once."""
+    run = run.assign_coords({name: labels for name, labels in LABELS.items() if name in run.dims})
+    return run.assign_attrs(constants_of(material_of(file)) | {"source": file.attrs["source"]})
 
 
 def read_runs(path):
@@ -203,4 +212,4 @@ def read_runs(path):
 def read_pulls(path):
     """Pulls of a file, list of xarray.Dataset, as `ratd.stretch` returns them but for the state at the end."""
     file = io.read(path, "stretched")
-    return [run.assign_attrs(surface_energy=file["surface_energy"].item()) for run in rows(file, "stretched")]
+    return [_as_returned(run, file) for run in rows(file, "stretched")]

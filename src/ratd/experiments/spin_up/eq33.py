@@ -205,12 +205,16 @@ def _fitted_rows(table, readings, mark):
         if "mean_monomer_radius" not in table:
             raise InputError("fit_ensemble: the table has no column 'mean_monomer_radius', needed for \"own\"")
         needed.append("mean_monomer_radius")
-    table = sort_cells(table)  # random draws must not depend on the order of the rows
-    numbers = table[needed].astype(float)
+    try:
+        numbers = table[needed].astype(float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"fit_ensemble: the columns {', '.join(needed)} must hold numbers ({error})") from None
     for name in needed:
         if name in ("a_eff", "mean_monomer_radius"):
             _check_size(numbers[name].to_numpy(), f"the column {name!r}")
-    return table.assign(usable=((numbers > 0) & np.isfinite(numbers)).all(axis=1)), _one_drive(table)
+    usable = ((numbers > 0) & np.isfinite(numbers)).all(axis=1)
+    # random draws must not depend on the order of the rows; those that are not used may have no size to sort by
+    return sort_cells(table.assign(a_eff=numbers["a_eff"].where(usable, 0.0), usable=usable)), _one_drive(table)
 
 
 def _check_size(radius, what):
@@ -332,6 +336,8 @@ def _readings(mean_monomer_radius):
     given = mean_monomer_radius
     if isinstance(given, str) or np.ndim(given) == 0:
         given = [given]
+    if len(given) == 0:
+        raise InputError("fit_ensemble: mean_monomer_radius is empty; give a radius in m, or 'own'")
     readings = {}
     for value in given:
         if isinstance(value, str):
