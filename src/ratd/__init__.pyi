@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ratd import laws as laws
 from ratd.aggregates.grain import Grain as Grain
 from ratd.aggregates.particles import Particles as Particles
-from ratd.aggregates.radii import RadiusDistribution
+from ratd.aggregates.radii import RadiusDistribution as RadiusDistribution
 from ratd.base.errors import FileError as FileError
 from ratd.base.errors import InputError as InputError
 from ratd.base.materials import Material as Material
@@ -79,7 +79,7 @@ def evolve(
     snapshot_every: int = 0,
     balance: float | None = 0.05,
     checkpoint: str | Path | None = None,
-    progress: Callable[[float, float, list[float]], object] | None = None,
+    progress: Callable[[float, float, dict[str, Any]], object] | None = None,
 ) -> xr.Dataset: ...
 def fit_ensemble(
     table: pd.DataFrame | xr.Dataset,
@@ -128,9 +128,11 @@ def periodic(
     *,
     scheme: Literal["homogeneous", "as_printed"] = "homogeneous",
 ) -> Any: ...
+def read_grains(path: str | Path) -> list[Grain]: ...
 def read_materials(path: str | Path) -> dict[str, Material]: ...
 def read_runs(path: str | Path) -> list[xr.Dataset]: ...
 def read_particles(path: str | Path, unit: str | None = None, frame: int = -1) -> Particles: ...
+def read_table(path: str | Path) -> pd.DataFrame: ...
 def spin_up(
     grain: Grain,
     *,

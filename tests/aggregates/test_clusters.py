@@ -103,7 +103,7 @@ def test_unequal_radii_are_those_given():
             "radius is None; it must be a number above 0, in m, and may be left out for ice",
         ),
         ({"n": 64, "radius": -1.0}, "radius is -1.0; it must be a number above 0"),
-        ({"n": 64, "radii": [1e-7] * 63}, r"radii must be 64 finite numbers above 0.* it is of the shape \(63,\)"),
+        ({"n": 64, "radii": [1e-7] * 63}, r"radii must be 64 finite numbers above 0.* they are of the shape \(63,\)"),
         ({"n": 2, "radii": [1e-7, -1e-7]}, r"radii\[1\] is -1e-07; radii must be finite numbers above 0"),
         ({"n": 64, "copies": "False"}, "copies is 'False'; it must be True or False"),
         ({"n": 64, "radii": [1e-7] * 64, "radius": 1e-7}, "radius and radii are both given"),

@@ -101,6 +101,13 @@ def test_of_many_pieces_the_nearest_are_named():
         Grain(position, [20e-9, 34e-9, 10e-9, 5e-9], "q-S")
 
 
+def test_of_pieces_that_are_far_apart_not_all_pairs_are_looked_at():
+    position, radius = chain(8)
+    position[4:, 1] += 4e-6
+    with pytest.raises(InputError, match="2 pieces.* No two monomers of different pieces are nearer .* than .*e-08 m"):
+        Grain(position, radius, "q-S")
+
+
 def test_one_monomer_inside_another_is_refused():
     with pytest.raises(InputError, match="overlap"):
         Grain(np.zeros((2, 3)), [50e-9, 10e-9], "q-S")

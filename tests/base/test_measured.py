@@ -16,3 +16,5 @@ def test_the_error_of_a_geometric_mean_is_that_of_its_cells():
 def test_a_quotient_has_the_relative_errors_of_both():
     assert quotient(Measured(6.0, 0.3), (2.0, 0.0)) == pytest.approx((3.0, 0.15))
     assert quotient((-6.0, 0.18), (2.0, 0.08)) == pytest.approx((-3.0, 3.0 * 0.05))
+    # of nothing the error is that of the number itself
+    assert quotient((0.0, 0.3), (-2.0, 0.1)) == (0.0, pytest.approx(0.15))

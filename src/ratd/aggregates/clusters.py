@@ -5,6 +5,7 @@ import numpy as np
 from ratd.aggregates.cluster_growth import join_clusters
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import seed_sequence
+from ratd.aggregates.radii import radii_array
 from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
@@ -68,7 +69,7 @@ def grow_bcca(n, material="ice", seed=0, *, radius=None, radii=None, copies=Fals
     elif copies:
         raise InputError("copies and radii are both given; a cluster that meets its copy has equal monomers only.")
     else:
-        each = rng.permutation(_check_radii(radii, n))
+        each = rng.permutation(radii_array(radii, n))
     position = join_clusters(each, material.surface_energy, material.reduced_modulus, copies, rng)
     return Grain(position, each, material, type="BCCA", seed=seed)
 
@@ -95,17 +96,3 @@ def _check_radius(radius, material):
             f"radius is {radius!r}; it must be a number above 0, in m, and may be left out for {known} only."
         )
     return float(radius)
-
-
-def _check_radii(radii, n):
-    try:
-        each = np.array(radii, dtype=np.float64)
-    except (TypeError, ValueError):
-        each = np.zeros(0)
-    if each.shape != (n,):
-        what = f"of the shape {each.shape}" if each.ndim else "no sequence"
-        raise InputError(f"radii must be {n} finite numbers above 0, in m, one for each monomer; it is {what}.")
-    wrong = np.flatnonzero(~(np.isfinite(each) & (each > 0.0)))
-    if len(wrong):
-        raise InputError(f"radii[{wrong[0]}] is {each[wrong[0]]:g}; radii must be finite numbers above 0, in m.")
-    return each

@@ -128,5 +128,19 @@ def grains(dataset):
 
 
 def read_grains(path):
-    """Grains of a file, list of `ratd.Grain`; see `ratd.pipeline.io.read` for the errors."""
+    """Grains of a file of the pipeline.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    list of ratd.Grain
+
+    Raises
+    ------
+    FileError
+        If there is none, it is damaged, or not one of grains.
+    """
     return grains(io.read(path, "grains"))

@@ -243,6 +243,9 @@ def _nearest_of_two_pieces(position, radius, material, label):
     reach = GAP_TOLERANCE * _widest(radius, material)
     i = np.empty(0, np.int64)
     while not i.size:
+        # all pairs of large pieces that are far apart would fill the memory
+        if reach > radius.max():
+            return f" No two monomers of different pieces are nearer to each other than {reach:.3g} m."
         reach *= 4.0
         i, j = close_pairs(position, radius, reach).T
         apart = label[i] != label[j]

@@ -7,8 +7,8 @@ import numpy as np
 
 from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.grain import Grain
-from ratd.aggregates.radii import RadiusDistribution, draw_radii
-from ratd.base.checks import check_seed, is_number, number_array
+from ratd.aggregates.radii import RadiusDistribution, draw_radii, radii_array
+from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import centre_of_mass
@@ -152,9 +152,7 @@ def grow_with_radii(type, radii, material, seed, *, migration="random"):
     material = get_material(material)
     migrations = TYPES[_check_type(type)]
     seed = check_seed(seed)
-    radius = number_array(radii, "radii")
-    if radius.ndim != 1 or len(radius) < 2 or not np.all(np.isfinite(radius) & (radius > 0.0)):
-        raise InputError("radii must be a list of at least two finite numbers above 0 (in m).")
+    radius = radii_array(radii)
     position = _place(radius, material, migrations, migration, seed_sequence(material.name, type, "radii", seed))
     return Grain(position, radius, material, type=type, seed=seed)
 

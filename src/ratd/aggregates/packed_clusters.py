@@ -12,6 +12,7 @@ import numpy as np
 
 from ratd.aggregates.ballistic import _turn
 from ratd.aggregates.grain import Grain
+from ratd.aggregates.radii import radii_array
 from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
@@ -93,15 +94,7 @@ def build_cluster(radii, radius, material="silica", *, second_contact=0.0, seed=
 
 def _checked(radii, radius, second_contact, seed):
     """Radii as an array; one sentence for the first argument that is wrong."""
-    try:
-        radii = np.array(radii, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("radii are no numbers; they must be a list of at least two numbers above 0, in m.") from None
-    if radii.ndim != 1 or len(radii) < 2:
-        raise InputError(f"radii have the shape {radii.shape}; they must be at least two numbers above 0, in m.")
-    wrong = np.flatnonzero(~(np.isfinite(radii) & (radii > 0.0)))
-    if len(wrong):
-        raise InputError(f"radii[{wrong[0]}] is {radii[wrong[0]]:g}; they must be at least two numbers above 0, in m.")
+    radii = radii_array(radii)
     if not (is_number(radius) and radius > 0.0):
         raise InputError(f"radius is {radius!r}; it must be a number above 0, in m.")
     if not (is_number(second_contact) and 0.0 <= second_contact <= 1.0):

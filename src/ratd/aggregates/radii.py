@@ -6,14 +6,46 @@ from statistics import NormalDist
 
 import numpy as np
 
-from ratd.base.checks import is_number
+from ratd.base.checks import check_radii, is_number, number_array
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 
-__all__ = ["RadiusDistribution", "draw_radii", "lognormal_radii", "mrn_moment", "mrn_radii"]
+__all__ = ["RadiusDistribution", "draw_radii", "lognormal_radii", "mrn_moment", "mrn_radii", "radii_array"]
 
 _MOST_PATHS = 1_000_000
 """Sequences of radii that are tried before a_eff is said to be out of reach."""
+
+
+def radii_array(radii, n=None):
+    """Radii of the monomers of an aggregate [m], checked.
+
+    Parameters
+    ----------
+    radii : array_like
+    n : int, optional
+        How many they must be; at least two when not given.
+
+    Returns
+    -------
+    (n,) float64 array
+        A copy.
+
+    Raises
+    ------
+    InputError
+        If they are no list of so many finite numbers above 0, or not of dust.
+    """
+    each = number_array(radii, "radii")
+    if each.ndim != 1 or (len(each) < 2 if n is None else len(each) != n):
+        wanted, each_one = ("at least two", "") if n is None else (n, ", one for each monomer")
+        raise InputError(
+            f"radii must be {wanted} finite numbers above 0, in m{each_one}; they are of the shape {each.shape}."
+        )
+    wrong = np.flatnonzero(~(np.isfinite(each) & (each > 0.0)))
+    if len(wrong):
+        raise InputError(f"radii[{wrong[0]}] is {each[wrong[0]]:g}; radii must be finite numbers above 0, in m.")
+    check_radii(each)
+    return each
 
 
 @dataclass(frozen=True)
@@ -57,6 +89,7 @@ class RadiusDistribution:
                 f"smallest and largest of the monomer radii are {self.smallest:g} m and {self.largest:g} m; "
                 "smallest must be below largest."
             )
+        check_radii(np.array([self.smallest, self.largest]))
         if not self.kept >= 1e-3:
             raise InputError(
                 f"Only {self.kept:.2g} of the monomer radii with median {self.median:g} m and sigma_ln "

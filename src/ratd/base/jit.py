@@ -25,7 +25,7 @@ def _source_digest():
     for layer in COMPILED:
         for path in sorted((root / layer).rglob("*.py")):
             text = path.read_bytes()
-            if b"base.jit import" in text or b"base.parts import" in text or layer in ("base", "laws", "engine"):
+            if b"base.jit import jit" in text or b"base.parts import" in text or layer in ("base", "laws", "engine"):
                 digest.update(str(path.relative_to(root)).encode())
                 digest.update(text)
     digest.update(f"numba {numba.__version__} numpy {np.__version__}".encode())

@@ -21,7 +21,7 @@ def quotient(one, other):
     """One number over another whose error is independent of its own, `Measured`; both are (value, error)."""
     (value, error), (below, error_below) = one, other
     found = value / below
-    return Measured(found, abs(found) * math.hypot(error / value, error_below / below))
+    return Measured(found, math.hypot(error, found * error_below) / abs(below))
 
 
 def median(values, cell=None, group=None):

@@ -26,7 +26,7 @@ from ratd.observables.energy import DISSIPATED, STORED, dissipated, in_step, kin
 from ratd.observables.pieces import heaviest_pieces, pieces, ranked_pieces
 from ratd.observables.pressure import COMPONENTS
 
-__all__ = ["columns", "depth", "evolve", "touching_at_start"]
+__all__ = ["checked_lengths", "depth", "evolve", "touching_at_start"]
 
 AT_REST = 1e-4
 """Part of what the contacts store by which a balance may be off where nothing moves."""
@@ -133,8 +133,7 @@ def evolve(
     checkpoint : path-like, optional
         Where to keep what is needed to go on after a kill, with the same bits.
     progress : callable, optional
-        Called every few seconds as ``progress(part_done, seconds_to_go, row)``, the row being the last record
-        (`columns` gives its numbers by name).
+        Called every few seconds as ``progress(part_done, seconds_to_go, record)``, the last record as a dict.
 
     Returns
     -------
@@ -163,12 +162,9 @@ def evolve(
     if drive is not None:
         _check_drive(drive, in_box, drag)
         balance = None
-    if not (is_number(duration) and duration > 0):
-        raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
+    records, snapshot_every = checked_lengths(duration, records, snapshot_every)
     if not (is_number(drag) and drag >= 0):
         raise InputError(f"drag is {drag!r}; it must be a number of at least 0, in 1/s.")
-    records = whole_number(records, "records", 1)
-    snapshot_every = whole_number(snapshot_every, "snapshot_every", 0)
     if not (balance is None or (is_number(balance) and balance > 0)):
         raise InputError(f"balance is {balance!r}; it must be a number above 0, or None for no check.")
     touching = touching_at_start(position, radius, box)
@@ -228,9 +224,16 @@ def evolve(
                 foresee = _warn_of_long(pace.to_go(duration - now, now), duration, state.scalar[DT])
             if progress is not None and to_tell.passed():
                 now = state.scalar[TIME]
-                progress(now / duration, pace.to_go(duration - now, now), rows[-1])
+                progress(now / duration, pace.to_go(duration - now, now), record_of(rows[-1]))
     _warn_of_passing(velocity, radius, max(first_step, state.scalar[DT]))
     return _dataset(state, rows, pictures, *parts)
+
+
+def checked_lengths(duration, records, snapshot_every):
+    """Number of records and of those from one snapshot to the next as int, checked as the duration is."""
+    if not (is_number(duration) and duration > 0):
+        raise InputError(f"duration is {duration!r}; it must be a number above 0, in s.")
+    return whole_number(records, "records", 1), whole_number(snapshot_every, "snapshot_every", 0)
 
 
 def _check_drive(drive, in_box, drag):
@@ -423,6 +426,11 @@ def columns(table):
     return values
 
 
+def record_of(row):
+    """Name -> number or array of one row; see `columns`."""
+    return {name: values[0] for name, values in columns(np.array([row])).items()}
+
+
 def _moved(rows, start):
     """The greatest of the kinetic energy and of what the contacts have let go or taken up since the start [J]."""
     values = columns(np.array([start, *rows]))
@@ -433,8 +441,7 @@ def _moved(rows, start):
 
 def _check_balance(row, moved, share):
     """Raise RuntimeError where a record is off by more than a share of what has moved by now; see `_moved`."""
-    values = columns(np.array([row]))
-    values = {name: array[0] for name, array in values.items()}
+    values = record_of(row)
     scale = max(moved, values["dissipated"].sum(), abs(values["box_work"]))
     # Near rest nothing moves that the step could miss by a part. Its error is one of what the contacts store.
     floor = AT_REST * np.abs(values["stored"]).sum()

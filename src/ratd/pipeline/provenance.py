@@ -29,6 +29,7 @@ outside every source hash, the second with all its modules."""
 
 NUMERICAL_PACKAGES = ("numpy", "numba", "pandas", "xarray", "netCDF4")
 """Packages whose versions are written into every file, next to that of ratd."""
+_OF_EACH = ("code_hash", "versions")
 
 _ROOT = Path(__file__).parent.parent
 _PACKAGE = "__init__.py"
@@ -340,6 +341,23 @@ def versions():
         ``"ratd 1.0.0, numpy 2.4.6, ..."``.
     """
     return ", ".join([f"ratd {__version__}", *(f"{name} {metadata.version(name)}" for name in NUMERICAL_PACKAGES)])
+
+
+def together(every):
+    """What the attributes of some files tell of a table that was joined from them.
+
+    Parameters
+    ----------
+    every : iterable of dict
+
+    Returns
+    -------
+    dict
+        ``code_hash`` and ``versions``, each that there is once and parted by "; ", and an empty ``input_hash``.
+    """
+    every = list(every)
+    parts = {name: [part for own in every for part in own.get(name, "").split("; ")] for name in _OF_EACH}
+    return {name: "; ".join(dict.fromkeys(filter(None, found))) for name, found in parts.items()} | {"input_hash": ""}
 
 
 def provenance(code, settings, inputs=()):

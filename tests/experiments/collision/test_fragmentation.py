@@ -93,7 +93,7 @@ def test_columns_of_datasets_are_numbers():
     falls = table([1, 2], lambda v: 2.0 - v)
     odd = pd.DataFrame({"velocity": falls["velocity"], "X": [xr.DataArray(value) for value in falls["X"]]})
     assert fragmentation_velocity(odd).equals(fragmentation_velocity(falls))
-    with pytest.raises(InputError, match="limit, samples and seed are 0.15, 0 and 0"):
+    with pytest.raises(InputError, match="samples is 0; it must be a whole number of at least 1"):
         fragmentation_velocity(falls, samples=0)
 
 

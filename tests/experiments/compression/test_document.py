@@ -97,12 +97,14 @@ def test_missing_data_are_one_sentence(tmp_path):
 def test_clusters_that_are_made_later_are_added_to_their_set(tmp_path):
     whole = io.read(document.DATA / "sets/n_1024.nc", "compression_set")
     for name, seeds in (("first", [0, 2, 4, 6, 7, 8, 9]), ("later", [5, 1, 3])):
-        part = whole.isel(seed_number=seeds)
+        part = whole.isel(seed_number=seeds).assign_attrs(code_hash=f"source of the {name}")
         filled = part["pressure"].notnull().any("seed_number")
         io.write(tmp_path / name / "compression/n_1024.nc", part.isel(phi_bin=filled.values), "compression_set")
         document.collect(tmp_path / name, tmp_path / "data")
     found = io.read(tmp_path / "data/sets/n_1024.nc", "compression_set")
     assert found["seed"].values.tolist() == list(range(10))
+    assert found.attrs["code_hash"] == "source of the first; source of the later" and found.attrs["input_hash"] == ""
+    assert found.attrs["versions"] == whole.attrs["versions"]
     for name in whole.variables:
         assert found[name].values == pytest.approx(whole[name].values, rel=1e-12, nan_ok=True), name
     # a seed that is there already: the new cluster takes the place of the old one, and the others stay
@@ -114,6 +116,16 @@ def test_clusters_that_are_made_later_are_added_to_their_set(tmp_path):
     assert twice["seed"].values.tolist() == list(range(10))
     factor = (twice["pressure"] / found["pressure"]).mean("phi_bin").values
     assert factor == pytest.approx([1, 2, 1, 2, 1, 2, 1, 1, 1, 1])
+
+
+def test_positions_of_a_larger_cluster_stay(tmp_path):
+    whole = io.read(document.DATA / "snapshots.nc", "compression_snapshots")
+    for name, n in (("small", 64), ("large", 128), ("small", 64)):
+        path = tmp_path / name / "compression/snapshots.nc"
+        io.write(path, whole.isel(monomer=slice(n)), "compression_snapshots")
+        document.collect(tmp_path / name, tmp_path / "data")
+        found = io.read(tmp_path / "data/snapshots.nc", "compression_snapshots")
+        assert found.sizes["monomer"] == (128 if (tmp_path / "large").exists() else 64)
 
 
 def test_pulls_that_are_made_later_are_added(tmp_path):

@@ -333,7 +333,7 @@ def test_grains_without_the_mark_are_left_out(table):
         gaps = table.astype({name: float})
         gaps.loc[gaps["seed"] == 3, name] = np.nan
         np.testing.assert_allclose(fit_ensemble(gaps, n_bootstrap=5)["A"], expected["A"], rtol=1e-12)
-    with pytest.raises(InputError, match="the columns a_eff, n_contacts, filling_factor, omega_disr, .* must hold numbers"):
+    with pytest.raises(InputError, match="the columns a_eff, n_contacts, .*omega_disr, .* must hold numbers"):
         fit_ensemble(table.astype({"omega_disr": object}).assign(omega_disr="fast"), n_bootstrap=5)
     with pytest.raises(InputError, match="mean_monomer_radius is empty; give a radius in m, or 'own'"):
         fit_ensemble(table, [], n_bootstrap=5)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ratd.base.checks import is_number, is_whole
+from ratd.base.checks import check_seed, is_number, whole_number
 from ratd.base.errors import InputError
 from ratd.base.materials import sphere_mass
 
@@ -132,11 +132,9 @@ def fragmentation_velocity(table, *, limit=STICKING, samples=1000, seed=0):
     the limit more than once, the last time counts: from there on clusters come apart.
     """
     table = _checked(table)
-    if not (is_whole(samples) and samples >= 1 and is_whole(seed) and seed >= 0 and is_number(limit)):
-        raise InputError(
-            f"limit, samples and seed are {limit!r}, {samples!r} and {seed!r}; they must be a number, a whole number "
-            "of at least 1 and one of at least 0."
-        )
+    if not is_number(limit):
+        raise InputError(f"limit is {limit!r}; it must be a number.")
+    samples, seed = whole_number(samples, "samples", 1), check_seed(seed)
     velocities, mean, _ = means(table, "X")
     middle = _crossing(velocities, mean, limit)
     rng = np.random.Generator(np.random.PCG64(seed))

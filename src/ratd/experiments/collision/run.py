@@ -9,7 +9,7 @@ from ratd.base.checks import check_seed, is_number
 from ratd.base.errors import InputError
 from ratd.experiments.collision.approach import approach
 from ratd.experiments.collision.laws import FARTHEST, balance_of, contacts_of, longest_step, step_of
-from ratd.experiments.evolve import columns, evolve
+from ratd.experiments.evolve import checked_lengths, evolve
 from ratd.experiments.relax import relax
 from ratd.engine.state import positions_as_given
 from ratd.laws.chosen import law_of
@@ -159,7 +159,8 @@ def collide(
     """
     law = law_of(law, dmt)
     _check(a, b, velocity, impact_parameter, seed, gap)
-    if is_number(duration) and duration > 0.0 and velocity * duration < 2.0 * gap:
+    checked_lengths(duration, records, snapshot_every)
+    if velocity * duration < 2.0 * gap:
         warnings.warn(too_short(velocity, duration, gap), UserWarning, stacklevel=2)
     material = a.material
     radius = np.concatenate([a.radius, b.radius])
@@ -181,10 +182,9 @@ def collide(
     contacts = np.concatenate([contacts_of(a, law), contacts_of(b, law) + len(a.radius)])
     energy = impact_energy(a.mass.sum(), b.mass.sum(), velocity)
 
-    def tell(part, to_go, row):
-        now = columns(np.array([row]))
-        moving = float(now["kinetic_translation"][0] + now["kinetic_spin"][0])
-        progress(float(now["time"][0]), int(now["n_pieces"][0]), moving / energy, to_go)
+    def tell(part, to_go, now):
+        moving = float(now["kinetic_translation"] + now["kinetic_spin"])
+        progress(float(now["time"]), int(now["n_pieces"]), moving / energy, to_go)
 
     run = evolve(
         position, radius, velocities, material=material, law=law, duration=duration, timestep=float(timestep),

@@ -25,6 +25,7 @@ from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
+from ratd.pipeline.provenance import together
 
 __all__ = ["collect", "main", "read_data", "redraw"]
 
@@ -111,7 +112,8 @@ def _added(there, new):
     own, other = (
         pd.MultiIndex.from_arrays([np.round(table[name].values, 9) for name in _ONE_PULL]) for table in (there, new)
     )
-    return xr.concat([there.isel(entry=~own.isin(other)), new], "entry", combine_attrs="drop")
+    both = xr.concat([there.isel(entry=~own.isin(other)), new], "entry", combine_attrs="drop")
+    return both.assign_attrs(together([there.attrs, new.attrs]))
 
 
 def read_data(data=DATA, spun=SPUN, peer=PEER):

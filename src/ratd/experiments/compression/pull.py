@@ -7,7 +7,8 @@ import xarray as xr
 
 from ratd.engine.state import FIELD_TYPES, State
 from ratd.experiments.compression.files import PULL, REFERENCE, read_cluster
-from ratd.experiments.compression.squeeze import law_of, squeezed, told
+from ratd.experiments.compression.run import compression_law
+from ratd.experiments.compression.squeeze import squeezed, told
 from ratd.experiments.compression.stretch import stretch
 from ratd.pipeline import io
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
@@ -115,7 +116,7 @@ def pulled(compressed, settings, *, progress=None, checkpoint=None):
         As of `ratd.stretch`.
     """
     own = settings["pull"]
-    how = {"law": law_of(settings), "timestep_factor": settings["timestep_factor"]}
+    how = {"law": compression_law(settings["k_n"]), "timestep_factor": settings["timestep_factor"]}
     run = stretch(
         compressed,
         own["strain_rate"],

@@ -99,7 +99,7 @@ class Cluster:
 def _of(cluster, material):
     """The same cluster of another material."""
     try:
-        return Grain(cluster.position, cluster.radius, material, seed=cluster.seed)
+        return cluster.replace(material=material)
     except InputError as error:
         raise InputError(
             f"material is {material.name!r}, in which contacts as deep as those of this cluster of "
@@ -249,9 +249,9 @@ def _warn_of_overlap(state, parts):
         )
 
 
-def compression_law():
-    """The law of the paper: JKR with a constant damping."""
-    return jkr(damping="constant", constant_damping=K_N)
+def compression_law(k_n=K_N):
+    """The law of the paper: JKR with a constant damping, `k_n` in m_0/t_0."""
+    return jkr(damping="constant", constant_damping=k_n)
 
 
 def prepared(cluster, parts, settings):
@@ -337,7 +337,7 @@ def _static_from(cluster, box, until_phi):
     return static
 
 
-def balance_check(explicit, long, remedy="take a lower strain_rate, in Python also a smaller timestep_factor"):
+def balance_check(explicit, long, remedy):
     """A function of a record that raises RuntimeError where the balance of energy is off by too much.
 
     Parameters

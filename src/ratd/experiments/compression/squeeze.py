@@ -1,17 +1,11 @@
 """Clusters that are compressed: the stage `compress` of the pipeline, and its words of progress."""
 
 from ratd.experiments.compression.files import read_cluster, run_row
-from ratd.experiments.compression.run import compress
+from ratd.experiments.compression.run import compress, compression_law
 from ratd.experiments.compression.steps import LongSteps
-from ratd.laws.jkr_with_springs import jkr
 from ratd.pipeline.jobs import duration
 
-__all__ = ["law_of", "run", "squeezed"]
-
-
-def law_of(settings):
-    """Contact law from settings: the constant damping ``k_n``."""
-    return jkr(damping="constant", constant_damping=settings["k_n"])
+__all__ = ["run", "squeezed"]
 
 
 def squeezed(grain, settings, **options):
@@ -20,7 +14,7 @@ def squeezed(grain, settings, **options):
     how = {name: settings[name] for name in names}
     own = settings["long_steps"]
     steps = None if own is None else LongSteps(**own)
-    return compress(grain, law=law_of(settings), long_steps=steps, **how, **options)
+    return compress(grain, law=compression_law(settings["k_n"]), long_steps=steps, **how, **options)
 
 
 def told(say):

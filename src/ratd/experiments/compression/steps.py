@@ -116,9 +116,9 @@ def integrators(material, radius, time_unit, timestep_factor, long_steps, strain
     ------
     InputError
     """
-    explicit = leapfrog(timestep_factor=timestep_factor)
-    if timestep_factor > LARGEST_FACTOR:
+    if not (is_number(timestep_factor) and 0.0 < timestep_factor <= LARGEST_FACTOR):
         raise InputError(f"timestep_factor is {timestep_factor!r}; it must be above 0 and at most {LARGEST_FACTOR:g}.")
+    explicit = leapfrog(timestep_factor=timestep_factor)
     if long_steps is None:
         return explicit, explicit
     if not isinstance(long_steps, LongSteps):

@@ -113,7 +113,7 @@ def strain(state, parts, marks, *, later=None, key=(), checkpoint=None, snapshot
     loaded = checkpoints.load(checkpoint, key)
     if loaded is None:
         rows = [_row(state, parts, None)]
-        kept = [positions_as_given(state)] if 0 in snapshots else []
+        kept = []
     else:
         state, tables = loaded
         rows, kept = list(tables["rows"]), list(tables["kept"])

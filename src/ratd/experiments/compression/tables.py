@@ -17,6 +17,7 @@ from ratd.observables.structure import cumulative_number, radius_of_gyration
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of
 from ratd.pipeline.kinds import MATERIAL, Kind, Variable, kind_of, over, register
+from ratd.pipeline.provenance import together
 
 __all__ = [
     "BIN",
@@ -271,7 +272,8 @@ def joined(one, other):
     table["mean_rolling_energy"] = np.average([each["mean_rolling_energy"] for each in (one, other)], weights=n)
     table["phi"] = (PHI, BIN ** (numbers + 0.5))
     table["snapshot_phi"], table["distance"] = (SNAPSHOT, most), one["distance"]
-    return typed(table).assign_attrs({name: one.attrs[name] for name in kind_of("compression_set").attributes})
+    shared = {name: one.attrs[name] for name in kind_of("compression_set").attributes}
+    return typed(table).assign_attrs(shared | together([one.attrs, other.attrs]))
 
 
 def typed(table):

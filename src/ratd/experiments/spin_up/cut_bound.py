@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from ratd.base.checks import is_whole, number_array
+from ratd.base.checks import number_array, whole_number
 from ratd.base.errors import InputError
 from ratd.base.jit import jit
 from ratd.geometry.shape import centre_of_mass, principal_axes
@@ -62,8 +62,7 @@ def cut_bound(grain, axis=None, *, directions=500):
     """
     if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
         raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
-    if not (is_whole(directions) and directions >= 1):
-        raise InputError(f"directions is {directions!r}; it must be a whole number of at least 1.")
+    directions = whole_number(directions, "directions", 1)
     u, v = _plane_of_rotation(grain, axis)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
     # Pull on each monomer at omega = 1 rad/s, in the plane normal to the axis.

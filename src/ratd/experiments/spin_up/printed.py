@@ -13,6 +13,7 @@ __all__ = [
     "PAPER_MEAN_RADIUS",
     "PRINTED_1",
     "PRINTED_2",
+    "PRINTED_GRAINS",
     "SPIN_UP",
     "TABLE_3",
     "TABLE_3_SOURCE",
@@ -31,6 +32,19 @@ OBSERVED = {
     "hensley_2021": ("Hensley & Draine (2021)", (0.19, 0.15, 0.17, 1.07, 2.34)),
 }
 """Ratios in the interstellar medium as Table 1 quotes them, in the order of `PRINTED_1`."""
+
+PRINTED_GRAINS = {
+    ("BA", 200): (160, 162, 543.1e-9),
+    ("BA", 350): (521, 521, 882.6e-9),
+    ("BA", 500): (1773, 1772, 1385.7e-9),
+    ("BAM1", 200): (117, 235, 457.4e-9),
+    ("BAM1", 350): (636, 1275, 901.2e-9),
+    ("BAM1", 500): (1885, 3774, 1214.7e-9),
+    ("BAM2", 200): (157, 475, 320.1e-9),
+    ("BAM2", 350): (649, 1950, 603.3e-9),
+    ("BAM2", 500): (1814, 5546, 845.2e-9),
+}
+"""Type and a_eff [nm] of the grains of Fig. 1 -> their N_mon, N_con and a_out [m]."""
 
 PRINTED_2 = {
     "a-C": ("50", "168", "0.16", "2368"),

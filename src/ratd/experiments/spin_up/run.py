@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.aggregates.grain import Grain
-from ratd.base.checks import is_whole, whole_number
+from ratd.base.checks import whole_number
 from ratd.base.errors import InputError
 from ratd.drives.largest import OMEGA, TORQUE_WORK
 from ratd.drives.rotating import OMEGA_RAT
@@ -328,5 +328,5 @@ class Run:
 def _check(grain, max_steps):
     if not isinstance(grain, Grain):
         raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
-    if max_steps is not None and not (is_whole(max_steps) and max_steps >= 1):
-        raise InputError(f"max_steps is {max_steps!r}; it must be a whole number of at least 1, or None for no limit.")
+    if max_steps is not None:
+        whole_number(max_steps, "max_steps", 1)

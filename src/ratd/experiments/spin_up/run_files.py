@@ -79,7 +79,22 @@ def run_of_seed(paths, seed):
 
 
 def read_table(path):
-    """Table of all grains, pandas.DataFrame, as `grain_table.grain_table` made it."""
+    """Table of all grains, a file ``grains.nc`` of the pipeline.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a grain; `ratd.fit_ensemble` takes it.
+
+    Raises
+    ------
+    FileError
+        If there is none, it is damaged, or no such table.
+    """
     return io.read(path, "table").to_pandas()
 
 

@@ -8,6 +8,7 @@ from ratd.base.statistics import mean_of
 from ratd.experiments.compression.tension_findings import HELD, in_units, main_pulls, nominal_phi
 from ratd.pictures.style import GREY, ONE_COLUMN, TYPE_COLOUR, logarithmic, new_figure, styled
 from ratd.pipeline import io
+from ratd.pipeline.provenance import together
 
 WAYS = {(1, 0): "one axis", (1, 1): "unloaded first, one axis", (3, 0): "three axes"}
 """Axes that are pulled and whether the box lets go of the cluster before -> what it is called."""
@@ -96,4 +97,6 @@ def draw(files, settings):
 
 def read_pulls(paths):
     """All entries of some files, xarray.Dataset."""
-    return xr.concat([io.read(path, "tension_set") for path in paths], "entry")
+    tables = [io.read(path, "tension_set") for path in paths]
+    joined = xr.concat(tables, "entry", combine_attrs="drop")
+    return joined.assign_attrs(together(table.attrs for table in tables))

@@ -165,6 +165,7 @@ def of_formulae(table):
     values = {
         "formulae.contacts least": float(contacts["median"].min()),
         "formulae.contacts most": float(contacts["median"].max()),
+        "formulae.grains": int(table.groupby("formula")[f"{MARK}_ratio"].count().drop(OWN, errors="ignore").min()),
         "formulae.single": f"{single.min():.2f} to {single.max():.2f}",
         "formulae.damping": median(ratios),
         "formulae.damping mean": geometric_mean(ratios.dropna()),

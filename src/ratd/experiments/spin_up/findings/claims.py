@@ -16,7 +16,7 @@ from ratd.experiments.spin_up.findings.ensemble import middle, of_class
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
-from ratd.experiments.spin_up.printed import FIRST_LOSS, PAPER_MEAN_RADIUS
+from ratd.experiments.spin_up.printed import FIRST_LOSS, PAPER_MEAN_RADIUS, PRINTED_GRAINS
 from ratd.base.measured import Measured, median
 
 __all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
@@ -235,9 +235,28 @@ def grown_claims(grown):
     values["g.radius factor"] = math.sqrt(values["g.radius"].value / (PAPER_MEAN_RADIUS / NM))
     values["g.radius range"] = middle(radius)
     values["g.holds radius"] = is_within(values["g.radius"], 18.0, 22.0)
+    values |= beside_printed_grains(grown)
     correlation = rank_correlation(grown["n_monomers"].to_numpy(), grown["a_eff"].to_numpy())
     values["g.monomers with size"] = correlation
     return values
+
+
+def beside_printed_grains(grown):
+    """Least, median and greatest of N_mon, N_con and a_out [nm] of ours beside each grain of Fig. 1, as one text.
+
+    ``g.printed BAM1 wider`` is how many printed BAM1 are wider than all of ours.
+    """
+    values, wider = {}, 0
+    for (kind, size), printed in PRINTED_GRAINS.items():
+        own = grown[(grown["type"] == kind) & np.isclose(grown["nm"], size)]
+        for name, value in zip(("n_monomers", "n_contacts", "enclosing_radius"), printed, strict=True):
+            unit = NM if name == "enclosing_radius" else 1.0
+            found = own[name] / unit
+            outside = "" if found.min() <= value / unit <= found.max() else ", **outside**"
+            text = f"{value / unit:.0f} in {found.min():.0f} to {found.max():.0f} ({found.median():.0f}){outside}"
+            values[f"g.printed {kind} {size} {name}"] = text
+            wider += kind == "BAM1" and name == "enclosing_radius" and value / unit > found.max()
+    return values | {"g.printed BAM1 wider": int(wider)}
 
 
 def _of_figure_6(table):

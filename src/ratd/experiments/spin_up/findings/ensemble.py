@@ -179,6 +179,25 @@ def strength_omega(table):
     return pd.Series(found, index=table.index)
 
 
+def _what_is_left(grown, table):
+    """Marks above the firm bound of the grain as grown: what is left of a grain may turn faster than the whole.
+
+    ``bound.large above most`` is how many large grains could not reach the printed omega even if they held as many
+    times their bound as any large one of their type that was spun up, at the paper's mark.
+    """
+    values = {f"bound.over {mark}": int((table[mark] > table["firm_bound"]).sum()) for mark in (MARK, "omega_disr")}
+    above = total = 0
+    for kind in TYPES:
+        rows = of_class(table[table["type"] == kind], "large")
+        over = rows["omega_disr"] / rows["firm_bound"]
+        most = float(over.max())
+        own = of_class(grown[grown["type"] == kind], "large")
+        above += int((own["printed"] > most * own["firm_bound"]).sum())
+        total += len(own)
+        values |= {f"bound.{kind} large most": most, f"bound.{kind} large over": float((over > 1.0).mean())}
+    return values | {"bound.large above most": above, "bound.large": total}
+
+
 def what_contacts_hold(grown, firm, table):
     """Table 3 beside the firm bound of all grown grains, and the spun-up ones beside both bounds.
 
@@ -227,6 +246,7 @@ def what_contacts_hold(grown, firm, table):
     # the printed omega above what even the grain that holds longest would bear
     values["bound.above farthest"] = int((grown["printed"] > farthest * grown["firm_bound"]).sum())
     values["bound.over firm types"] = " and ".join(kind for kind in TYPES if (beyond["type"] == kind).any())
+    values |= _what_is_left(grown, table)
     strength = strength_omega(table)
     for kind in TYPES:
         for name in CLASSES:
