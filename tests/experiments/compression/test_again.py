@@ -28,6 +28,8 @@ def test_what_is_the_same_and_what_is_not(committed):
     found = again.beside(other, committed)
     assert list(found) == sorted(seeds[1:])
     assert {seed for seed, difference in found.items() if difference > 0.0} == {seeds[1]}
+    # a table that begins later and ends earlier
+    assert again.beside(other.isel(phi_bin=slice(7, -5)), committed).keys() == found.keys()
     other["phi"].values[3] *= 1.01
     with pytest.raises(InputError, match="other bins"):
         again.beside(other, committed)
@@ -39,6 +41,6 @@ def test_the_command(tmp_path, capsys, monkeypatch):
     assert again.main([str(tmp_path)]) == 1 and "has no sets" in capsys.readouterr().out
     (tmp_path / "compression").mkdir()
     shutil.copy(SETS / "rate_1e-5.nc", tmp_path / "compression")
-    assert again.main([str(tmp_path)]) == 0 and "5 clusters are there too, 5 of them" in capsys.readouterr().out
+    assert again.main([str(tmp_path)]) == 0 and "5 clusters in both, 5 of them" in capsys.readouterr().out
     shutil.copy(SETS / "rate_1e-5.nc", tmp_path / "compression" / "rate_1e-6.nc")
     assert again.main([str(tmp_path)]) == 1 and "differs by up to" in capsys.readouterr().out

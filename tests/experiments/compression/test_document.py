@@ -11,8 +11,10 @@ import ratd
 from pictures_alike import unlike
 from ratd.base.measured import Measured
 from ratd.experiments.compression import document
-from ratd.experiments.compression.findings import findings, of_repeats, of_sizes
+from ratd.experiments.compression.findings import findings, of_sizes
 from ratd.experiments.compression.pairs import BY_SIZE
+from ratd.experiments.compression.plan import load
+from ratd.experiments.compression.repeats import of_repeats
 from ratd.experiments.compression.strength import measured, scatter_at
 from ratd.experiments.compression.tables import joined
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
@@ -139,6 +141,8 @@ def test_pulls_that_are_made_later_are_added(tmp_path):
     # those that are there already are replaced
     again = whole.isel(entry=[3, 4])
     again["strength"] = 2.0 * again["strength"]
+    # a pull begins where a step of time ends
+    again["phi_compressed"] = again["phi_compressed"] + 1e-6
     io.write(tmp_path / "again/tension/x/phi_0.1_seed_0.nc", again, "tension_set")
     document.collect(tmp_path / "again", tmp_path / "data")
     twice = io.read(tmp_path / "data/tension.nc", "tension_set")
@@ -307,13 +311,21 @@ def test_a_slow_squeeze_is_said_to_suggest_what_five_clusters_do_not_show(values
 
 
 def test_sets_that_were_made_once_more_agree_in_their_means():
-    """Within three errors, and single clusters by less than two clusters do."""
-    sets, *_, repeats = document.read_data()
-    found = of_repeats(sets, repeats)
-    assert {name.split(".")[0] for name in found} == set(repeats) and len(repeats) >= 2
-    over = [value for name, value in found.items() if ".over_first_" in name]
-    assert len(over) >= 7 and all(abs(one.value - 1.0) < 3.0 * one.error for one in over)
+    """Those of ten and all together within three errors, and single clusters by less than two clusters do."""
+    sets, entries, *_, repeats, pulled = document.read_data()
+    found = of_repeats(sets, repeats, entries, pulled)
+    assert {name.split(".")[0] for name in found} == {*repeats, "repeats"}
+    # every set of the default config
+    assert set(repeats) == set(load(*document.CONFIGS[:4]).sets)
+    many = ("repeats", *(name for name in repeats if found[f"{name}.repeated"] >= 10))
+    over = [value for name, value in found.items() if ".over_first_" in name and name.startswith(many)]
+    assert len(over) >= 12 and all(abs(one.value - 1.0) <= 3.0 * one.error for one in over)
+    strength = found["repeats.strength"]
+    assert found["repeats.pulls"] >= 40 and abs(strength.value - 1.0) < 3.0 * strength.error
     assert found["n_1024.parted_0.1"] < 0.5 * float(measured(scatter_at(sets["n_1024"], 0.1)).value)
     # a set beside itself
-    same = of_repeats(sets, {"base": sets["base"]})
+    same = of_repeats(sets, {"base": sets["base"]}, entries, entries)
     assert same["base.parted_0.1"] == 0.0 and same["base.over_first_0.1"].value == pytest.approx(1.0)
+    assert same["repeats.pulls"] == entries.sizes["entry"] and same["repeats.strength"] == (1.0, 0.0)
+    stronger = of_repeats(sets, {}, entries, entries.assign(strength=1.1 * entries["strength"]))
+    assert stronger["repeats.strength"].value == pytest.approx(1.1)

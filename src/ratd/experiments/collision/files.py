@@ -1,7 +1,7 @@
 """Kinds of files of the collision, and the rows that go into them.
 
-A row of `clusters` is one cluster, one of `collisions` one collision. Of the pieces that a collision leaves, single
-spheres are only counted. Positions of snapshots are rounded to a nanometre, which is what a picture needs.
+A row of `built_clusters` is one cluster, one of `collisions` one collision. Of the pieces that a collision leaves,
+single spheres are only counted. Positions of snapshots are rounded to a nanometre, which is what a picture needs.
 """
 
 import numpy as np

@@ -14,6 +14,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.document import DATA
+from ratd.experiments.compression.tables import bins
 from ratd.pipeline import io
 
 __all__ = ["COMPARED", "beside", "main"]
@@ -40,8 +41,10 @@ def beside(again, committed):
     InputError
         If the two have other bins of the filling factor.
     """
-    n = min(again.sizes["phi_bin"], committed.sizes["phi_bin"])
-    if not np.array_equal(again["phi"].values[:n], committed["phi"].values[:n]):
+    phi = [table["phi"].values for table in (again, committed)]
+    # one of fewer clusters may begin or end elsewhere
+    _, *places = np.intersect1d(*(bins(values) for values in phi), return_indices=True)
+    if not len(places[0]) or not np.allclose(*(values[at] for values, at in zip(phi, places, strict=True)), rtol=1e-9):
         raise InputError("the sets have other bins of the filling factor; nothing can be compared.")
     rows = [{seed: k for k, seed in enumerate(table["seed"].values.tolist())} for table in (again, committed)]
     found = {}
@@ -49,7 +52,8 @@ def beside(again, committed):
         apart = []
         for name in COMPARED:
             own, other = (
-                table[name].values[row[seed], :n] for table, row in zip((again, committed), rows, strict=True)
+                table[name].values[row[seed], at]
+                for table, row, at in zip((again, committed), rows, places, strict=True)
             )
             both = np.isfinite(own) & np.isfinite(other)
             if both.any():
@@ -81,7 +85,7 @@ def main(words=None):
             same = sum(difference == 0.0 for difference in found.values())
             any_found |= bool(found)
             all_same &= same == len(found)
-            print(f"{path.stem}: {plural(len(found), 'cluster')} are there too, {same} of them to the last bit")
+            print(f"{path.stem}: {plural(len(found), 'cluster')} in both, {same} of them the same to the last bit")
             for seed, difference in found.items():
                 if difference != 0.0:
                     print(f"{path.stem}: seed {seed} differs by up to {difference:.2g} of the greatest value")

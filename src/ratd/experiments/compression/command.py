@@ -21,7 +21,7 @@ from ratd.experiments.command import (
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.figures.page import page_of
 from ratd.experiments.compression.files import run_row
-from ratd.experiments.compression.run import FASTEST, compress
+from ratd.experiments.compression.run import DENSEST, FASTEST, compress
 from ratd.experiments.saved import read_runs
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, logarithmic, new_figure, save, styled
 from ratd.pipeline.atomic import write_text
@@ -44,7 +44,7 @@ SMOOTH = 1.1
     help="C_v: the box shrinks with dL/dt = -2 C_v L/t_0. The smaller, the lower the phi from which it is static.",
 )  # fmt: skip
 @click.option(
-    "--until-phi", default=0.3, show_default=True, type=Finite(0, 0.64, min_open=True),
+    "--until-phi", default=0.3, show_default=True, type=Finite(0, DENSEST, min_open=True),
     help="Filling factor at which to end.",
 )  # fmt: skip
 def command(file, material, unit, starts, out, strain_rate, until_phi):

@@ -15,10 +15,11 @@ import xarray as xr
 from ratd.base.errors import FileError, InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.figures.monomers import name_of
-from ratd.experiments.compression.figures.tension import read_pulls
+from ratd.experiments.compression.figures.tension import read_entries
 from ratd.experiments.compression.figures.spring_back import spring_back
 from ratd.experiments.compression.findings import findings
 from ratd.experiments.compression.plan import load
+from ratd.experiments.compression.repeats import pull_keys
 from ratd.experiments.compression.tables import joined
 from ratd.experiments.compression.tension_findings import spun_up
 from ratd.pictures.style import save
@@ -30,6 +31,8 @@ from ratd.pipeline.provenance import together
 __all__ = ["collect", "main", "read_data", "redraw"]
 
 DATA = Path("docs/compression/data")
+PULLS, AGAIN = "tension.nc", "again"
+"""File of the pulls, and folder of what was made once more, in the data."""
 FIGURES = Path("docs/compression")
 DOCUMENTS = {
     Path("docs/templates/compression.md"): Path("docs/compression.md"),
@@ -47,8 +50,6 @@ SPUN = Path("docs/reproduction/data/driven.csv")
 """Table of the ensemble of the spin-up, for the strengths that it implies."""
 PEER = Path("docs/validation/data")
 """Folder of what LAMMPS found, taken there by ``python -m ratd.validation.document collect``."""
-_ONE_PULL = ("n_monomers", "seed", "phi_compressed", "strain_rate", "n_axes", "unloaded")
-"""What tells a pull from others; the rate is rounded to 1e-9."""
 
 
 def collect(results, data=DATA):
@@ -100,8 +101,8 @@ def collect(results, data=DATA):
         with atomic(target) as temporary:
             temporary.write_bytes((results / "compression" / name).read_bytes())
     if pulls:
-        target = data / "tension.nc"
-        entries = read_pulls(pulls)
+        target = data / PULLS
+        entries = read_entries(pulls)
         if target.is_file():
             entries = _added(io.read(target, "tension_set"), entries)
         io.write(target, entries, "tension_set")
@@ -109,10 +110,9 @@ def collect(results, data=DATA):
 
 def _added(there, new):
     """Pulls that are there, but for those that are made anew, and new ones behind them."""
-    own, other = (
-        pd.MultiIndex.from_arrays([np.round(table[name].values, 9) for name in _ONE_PULL]) for table in (there, new)
-    )
-    both = xr.concat([there.isel(entry=~own.isin(other)), new], "entry", combine_attrs="drop")
+    anew = set(pull_keys(new))
+    kept = [key not in anew for key in pull_keys(there)]
+    both = xr.concat([there.isel(entry=kept), new], "entry", combine_attrs="drop")
     return both.assign_attrs(together([there.attrs, new.attrs]))
 
 
@@ -130,22 +130,25 @@ def read_data(data=DATA, spun=SPUN, peer=PEER):
         See `ratd.experiments.compression.beside_lammps` and `ratd.experiments.compression.springs`.
     repeats : dict of str to xarray.Dataset
         Sets that were made once more.
+    pulled : xarray.Dataset or None
+        Pulls that were made once more.
     """
     data = Path(data)
     sets, repeats = (
-        {path.stem: io.read(path, "compression_set") for path in sorted((data / folder).glob("*.nc"))}
-        for folder in ("sets", "again")
+        {path.stem: io.read(path, "compression_set") for path in sorted(folder.glob("*.nc")) if path.name != PULLS}
+        for folder in (data / "sets", data / AGAIN)
     )
     if "base" not in sets:
         raise FileError(f"{data / 'sets'}: holds no base.nc, which all sets are compared with")
-    tension = data / "tension.nc"
-    entries = io.read(tension, "tension_set") if tension.is_file() else None
+    entries, pulled = (
+        io.read(path, "tension_set") if path.is_file() else None for path in (data / PULLS, data / AGAIN / PULLS)
+    )
     grains = spun_up(pd.read_csv(spun)) if Path(spun).is_file() else None
     beside = []
     for name in ("compression", "box_at_rest", "dense", "spring_back"):
         path = Path(peer, f"{name}.nc")
         beside.append(io.read(path, f"validation_{name}").to_dataframe() if path.is_file() else None)
-    return sets, entries, grains, *beside, repeats
+    return sets, entries, grains, *beside, repeats, pulled
 
 
 def redraw(folder=".", into=None):
@@ -160,7 +163,7 @@ def redraw(folder=".", into=None):
     """
     folder = Path(folder)
     into = folder if into is None else Path(into)
-    sets, entries, grains, *beside, springs, repeats = read_data(folder / DATA, folder / SPUN, folder / PEER)
+    sets, entries, grains, *beside, springs, repeats, pulled = read_data(folder / DATA, folder / SPUN, folder / PEER)
     plan = load(*(folder / path for path in CONFIGS), schemas=folder / "config/schema")
     for name in plan.figures:
         figure = draw(name, plan, sets, entries, grains, folder / DATA)
@@ -168,7 +171,7 @@ def redraw(folder=".", into=None):
             save(figure, into / FIGURES / f"{name}.png")
     if springs is not None:
         save(spring_back(springs), into / FIGURES / "spring_back.png")
-    values = findings(sets, entries, grains, *beside, springs, repeats)
+    values = findings(sets, entries, grains, *beside, springs, repeats, pulled)
     for template, document in DOCUMENTS.items():
         text = (folder / template).read_text(encoding="utf-8")
         write_text(into / document, fill(text, values, str(template)))

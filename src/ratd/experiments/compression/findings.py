@@ -21,6 +21,7 @@ from ratd.experiments.compression.beside_lammps import of_box, of_dense, of_lamm
 from ratd.experiments.compression.losses import WAYS, lost_from, overtakes, part_of_work, share_at, total_at
 from ratd.experiments.compression.monomers import LENGTHS, predicted_pressures
 from ratd.experiments.compression.pairs import BY_SIZE, HIGH, LOW_RANGE, SLOW_RATES, SMALL, of_pairs
+from ratd.experiments.compression.repeats import near, of_repeats, parted
 from ratd.experiments.compression.springs import of_springs
 from ratd.experiments.compression.static import (
     box_rate,
@@ -58,8 +59,6 @@ from ratd.observables.energy import DISSIPATED
 
 __all__ = ["findings"]
 
-REPEATED_AT = (0.05, 0.1, 0.2, 0.3, 0.48)
-"""Filling factors at which clusters that were made once more are set beside the first ones."""
 SLIDING = 1e-16
 """Energy [J] lost by sliding in a cluster at which it is said to begin: the least in the printed Fig. 8."""
 AT = (0.002, 0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.48)
@@ -175,7 +174,7 @@ def _balance(table, last):
     lost = sum(table[f"dissipated_{way}"].values for way in DISSIPATED)
     found = {}
     for phi in [phi for phi in BALANCE_AT if phi < last]:
-        k = _bin_at(table, phi)
+        k = nearest_phi(table["phi"].values, phi)
         found[f"residual_{phi:g}"] = float(np.nanmax(np.abs((missing / work)[:, table["phi"].values > phi])))
         found[f"untold_{phi:g}"] = Measured(*mean_of(-(missing / work)[:, k]))
         found[f"lacks_{phi:g}"] = float(abs(np.nansum(missing[:, k]) / np.nansum(work[:, k])))
@@ -236,7 +235,7 @@ def of_rates(sets, values):
     for name, own in (("same", same), ("others", ~same)):
         if own.sum() > 1:
             found[f"rates.{name}"] = several(fit_power_law(base.isel(seed_number=own)))[2]
-    again = [_again(sets[f"rate_{rate}"], base, 0.1) for rate in SLOW_RATES if f"rate_{rate}" in sets]
+    again = [parted(sets[f"rate_{rate}"], base, 0.1) for rate in SLOW_RATES if f"rate_{rate}" in sets]
     return found | {"rates.again_least": min(again), "rates.again_most": max(again)}
 
 
@@ -287,9 +286,9 @@ def of_steps(tables, explicit):
         damped = (total_at(each, DAMPED, STEPS_END) - total_at(each, DAMPED, FIT_RANGE[0]) for each in pair)
         found[f"{name}.over_damped_late"] = _over(*damped)
         for value in STEPS_AT:
-            both = np.stack([_near(each, value) for each in pair], axis=1)
+            both = np.stack([near(each, value) for each in pair], axis=1)
             found[f"{name}.over_pressure_{value:g}"] = measured(of_means(both, lambda mean: mean[0] / mean[1]))
-        found[f"{name}.again"] = _again(*pair, 0.1)
+        found[f"{name}.again"] = parted(*pair, 0.1)
         found[f"{name}.over_steps"] = float(np.mean(pair[1]["steps"].values / pair[0]["steps"].values))
     return found
 
@@ -355,43 +354,6 @@ def _mach(name, strain_rate, phi, n=PAPER_N):
     return face / sound
 
 
-def of_repeats(sets, repeats):
-    """Pressures of clusters that were made once more, by another state of the code, over the first ones.
-
-    Parameters
-    ----------
-    sets, repeats : dict of str to xarray.Dataset
-    """
-    found = {}
-    for name, table in repeats.items():
-        pair = of_same_clusters([sets[name], table])
-        found[f"{name}.repeated"] = pair[0].sizes["seed_number"]
-        for phi in REPEATED_AT:
-            near = [_near(each, phi) for each in pair]
-            if phi < sets[name]["phi"].values[-1] and np.isfinite(near).all():
-                both = np.stack(near, axis=1)
-                found[f"{name}.over_first_{phi:g}"] = measured(of_means(both, lambda mean: mean[1] / mean[0]))
-                found[f"{name}.parted_{phi:g}"] = _again(*pair, phi)
-    return found
-
-
-def _near(table, phi):
-    """Pressures of single clusters near a filling factor, (seeds,)."""
-    k = _bin_at(table, phi)
-    return table["pressure"].values[:, max(k - 2, 0) : k + 3].mean(axis=1)
-
-
-def _again(table, other, phi):
-    """Root mean square of P over that of the same cluster in another run, less 1, near a filling factor."""
-    own, other = (_near(each, phi) for each in of_same_clusters([table, other]))
-    return float(np.sqrt(np.mean((own / other - 1.0) ** 2)))
-
-
-def _bin_at(table, phi):
-    """Number of the bin of a filling factor in a table."""
-    return nearest_phi(table["phi"].values, phi)
-
-
 def worst_balance(sets, values):
     """The worst balance of energy from 0.1 on of all sets with long steps, over the work."""
     long = [name for name, table in sets.items() if "SemiImplicit" in table.attrs["integrator"]]
@@ -399,7 +361,7 @@ def worst_balance(sets, values):
     return {"long_steps.residual": max(residuals)} if residuals else {}
 
 
-def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=None, repeats=None):
+def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=None, repeats=None, pulled=None):
     """Values and verdicts for the slots of the document.
 
     Parameters
@@ -420,17 +382,21 @@ def findings(sets, entries, spun, lammps=None, box=None, dense=None, springs=Non
         See `ratd.experiments.compression.springs.of_springs`.
     repeats : dict of str to xarray.Dataset, optional
         Sets that were made once more.
+    pulled : xarray.Dataset, optional
+        Pulls that were made once more.
     """
     values = {"fit_low": FIT_RANGE[0], "fit_high": FIT_RANGE[1]}
     values["guettler_300"] = float(filling_factor_guettler2009(300.0))
     for name, table in sets.items():
         values |= of_set(name, table)
-    values |= of_pairs(sets) | of_repeats(sets, repeats or {})
+    values |= of_pairs(sets)
+    if repeats:
+        values |= of_repeats(sets, repeats, entries, pulled)
     values |= worst_balance(sets, values)
     both = [name for name in (HIGH, BY_SIZE[-1]) if name in sets]
     if len(both) == 2:
         values[f"{HIGH}.over_all"] = quotient(*(values[f"{name}.ratio_0.1"] for name in both))
-        values[f"{HIGH}.again"] = _again(*(sets[name] for name in both), 0.1)
+        values[f"{HIGH}.again"] = parted(*(sets[name] for name in both), 0.1)
     for name, k in LED:
         if name in sets:
             values[f"{name}.led_by_{k}"] = led_by(sets[name], 0.01, k)

@@ -22,7 +22,7 @@ from ratd.experiments.command import (
 )
 from ratd.experiments.compression.figures.common import power
 from ratd.experiments.compression.files import stretched_row
-from ratd.experiments.compression.run import compress
+from ratd.experiments.compression.run import DENSEST, FASTEST, compress
 from ratd.experiments.compression.stretch import AXES, doubts, stretch
 from ratd.experiments.saved import read_runs
 from ratd.pictures.style import GREY, HIGHLIGHT, ONE_COLUMN, new_figure, save, styled
@@ -34,11 +34,11 @@ __all__ = ["command", "show"]
 @click.command("stretch")
 @aggregate_options
 @click.option(
-    "--phi", default=0.1, show_default=True, type=Finite(0, 0.64, min_open=True),
+    "--phi", default=0.1, show_default=True, type=Finite(0, DENSEST, min_open=True),
     help="Filling factor to which the aggregate is compressed first.",
 )  # fmt: skip
 @click.option(
-    "--strain-rate", default=1e-5, show_default=True, type=Finite(0, 1e-2, min_open=True),
+    "--strain-rate", default=1e-5, show_default=True, type=Finite(0, FASTEST, min_open=True),
     help="C_v: the box shrinks, then grows, with 2 C_v L/t_0.",
 )  # fmt: skip
 @click.option(

@@ -51,7 +51,7 @@ GRAIN_COLUMNS = {
 """Units and meaning of what is known before the spin-up."""
 
 RUN_COLUMNS = {
-    "drive": ("", "what turns the grain: prescribed or literal"),
+    "drive": ("", "what turns the grain: prescribed, torque or literal"),
     "steps": ("1", "time steps of the spin-up"),
     "timestep": ("s", "first time step of the spin-up"),
     "end_reason": ("", "why the spin-up ended"),

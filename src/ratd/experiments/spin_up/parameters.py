@@ -31,7 +31,7 @@ PARAMETER_COLUMNS = {
     "parameter": ("", "what differs from the material as it is: none, xi_c or T_vis"),
     "material": ("", "material of the monomers"),
     "type": ("", "growth: BA, BAM1 or BAM2"),
-    "drive": ("", "what turns the grain: prescribed or literal"),
+    "drive": ("", "what turns the grain: prescribed, torque or literal"),
     "a_eff": ("m", "effective radius"),
     "seed": ("1", "seed of the grain"),
     "critical_rolling_displacement": ("m", "critical rolling displacement xi_c"),

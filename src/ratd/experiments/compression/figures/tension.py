@@ -92,10 +92,10 @@ def _over_formula(entries, own):
 
 def draw(files, settings):
     """The figure of a job of the pipeline, from its files and settings."""
-    return tension(read_pulls(files["pulls"]))
+    return tension(read_entries(files["pulls"]))
 
 
-def read_pulls(paths):
+def read_entries(paths):
     """All entries of some files, xarray.Dataset."""
     tables = [io.read(path, "tension_set") for path in paths]
     joined = xr.concat(tables, "entry", combine_attrs="drop")
