@@ -198,7 +198,6 @@ def test_wrong_mixtures_are_refused(fractions, message):
         ({"name": ""}, "name"),
         ({"youngs_modulus": 50}, "it is in Pa, and no solid has one below 10000"),
         ({"viscous_time": 5.0}, "it is in s, and no solid has one below 0 or above 1e-07"),
-        ({"critical_rolling_displacement": 0.2}, "it is in m, and no solid has one below 0 or above 1e-06"),
         ({"density": 2.0}, "it is in kg/m3"),
         ({"surface_energy": 20.0}, "it is in J/m2"),
     ],

@@ -25,7 +25,6 @@ PLAUSIBLE = {
     "youngs_modulus": (1e4, 1e13, "Pa"),
     "density": (10.0, 3e4, "kg/m3"),
     "viscous_time": (0.0, 1e-7, "s"),
-    "critical_rolling_displacement": (0.0, 1e-6, "m"),
 }
 """Between which values a constant of a solid lies, and its unit: what lies outside was given in another one."""
 

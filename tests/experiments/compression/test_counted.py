@@ -79,14 +79,14 @@ def test_the_derived_pressure_goes_with_the_sixth_power_of_the_length():
 def test_dense_clusters_are_held_to_a_stricter_balance_and_long_steps_to_a_milder_one():
     zero = {"phi": 0.1, "work": 0.0, "energy_residual": 0.0, "n_contacts": 10.0, "dissipated_damping": 0.0}
     zero |= {"stored_normal": 0.0}
-    check = balance_check({0.0: 0.2, 0.3: 0.002}, {0.0: 0.2, 0.3: 0.1})
+    check = balance_check({0.0: 0.2, 0.3: 0.002}, {0.0: 0.2, 0.3: 0.1}, "take other steps")
     row = zero | {"work": 1.0, "energy_residual": 0.05}
     check(row, zero, False)
     check(row | {"phi": 0.4}, zero, True)
     # what was lost counts too
     check(zero | {"dissipated_damping": 1.0, "energy_residual": 0.05}, zero, False)
     for wrong, long in ((row | {"phi": 0.4}, False), (row | {"phi": 0.4, "energy_residual": 0.15}, True)):
-        with pytest.raises(RuntimeError):
+        with pytest.raises(RuntimeError, match="that the box worked or friction took: take other steps"):
             check(wrong, zero, long)
 
 

@@ -3,6 +3,8 @@
 import itertools
 import math
 
+import numpy as np
+
 from ratd.base.measured import Measured, quotient
 from ratd.experiments.compression.strength import (
     NEAR,
@@ -70,12 +72,14 @@ def of_pairs(sets):
             found[f"{name}.paired"] = measured(compared(sets[name], sets[other], low, high))
             same = of_same_clusters([sets[name], sets[other]])[1]
             for phi in (0.002, 0.003, 0.005, 0.01, 0.02, 0.03):
-                if phi * NEAR < sets[name]["phi"].values[-1]:
+                own = _reaching(sets[name], phi * NEAR)
+                if own.sizes["seed_number"]:
                     found[f"{name}.beside_{phi:g}"] = measured(ratio_at(same, phi))
                     # looser ones have bins without pressure
                     if phi < 0.005:
                         continue
-                    found[f"{name}.over_{phi:g}"] = _of_same(sets[name], sets[other], phi)
+                    found[f"{name}.n_{phi:g}"] = own.sizes["seed_number"]
+                    found[f"{name}.over_{phi:g}"] = _of_same(own, sets[other], phi)
                     found[f"{name}.over_all_{phi:g}"] = _of_all(sets[name], sets[other], phi)
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:
                 found[f"{name}.steeper_low"] = several(compared(sets[name], sets[other], *LOW_RANGE))[1]
@@ -91,6 +95,12 @@ def of_pairs(sets):
         if {name, SLOWEST[0]} <= set(sets):
             found |= _by_size(sets, name, SLOWEST[0], (0.01, 0.02), SLOWEST[0])
     return found | _dense(sets) | _of_few(sets) | _of_copies(sets)
+
+
+def _reaching(table, phi):
+    """The clusters of a set that go up to a filling factor."""
+    last = np.where(np.isfinite(table["pressure"].values), table["phi"].values, 0.0)
+    return table.isel(seed_number=last.max(axis=1) > phi)
 
 
 def _dense(sets):
