@@ -14,7 +14,7 @@ import numpy as np
 from ratd.base.errors import InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.document import DATA
-from ratd.experiments.compression.tables import bins
+from ratd.experiments.compression.tables import shared_bins
 from ratd.pipeline import io
 
 __all__ = ["COMPARED", "beside", "main"]
@@ -41,10 +41,10 @@ def beside(again, committed):
     InputError
         If the two have other bins of the filling factor.
     """
-    phi = [table["phi"].values for table in (again, committed)]
     # one of fewer clusters may begin or end elsewhere
-    _, *places = np.intersect1d(*(bins(values) for values in phi), return_indices=True)
-    if not len(places[0]) or not np.allclose(*(values[at] for values, at in zip(phi, places, strict=True)), rtol=1e-9):
+    places = shared_bins(again, committed)
+    phi = [table["phi"].values[at] for table, at in zip((again, committed), places, strict=True)]
+    if not len(phi[0]) or not np.allclose(*phi, rtol=1e-9):
         raise InputError("the sets have other bins of the filling factor; nothing can be compared.")
     rows = [{seed: k for k, seed in enumerate(table["seed"].values.tolist())} for table in (again, committed)]
     found = {}

@@ -78,7 +78,6 @@ def of_pairs(sets):
                     # looser ones have bins without pressure
                     if phi < 0.005:
                         continue
-                    found[f"{name}.n_{phi:g}"] = own.sizes["seed_number"]
                     found[f"{name}.over_{phi:g}"] = _of_same(own, sets[other], phi)
                     found[f"{name}.over_all_{phi:g}"] = _of_all(sets[name], sets[other], phi)
             if sets[name]["phi"].values[-1] > LOW_RANGE[1]:

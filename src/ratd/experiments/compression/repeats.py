@@ -3,8 +3,9 @@
 import numpy as np
 
 from ratd.base.measured import Measured, geometric_mean
+from ratd.base.statistics import mean_of
 from ratd.experiments.compression.strength import measured, of_means, of_same_clusters
-from ratd.experiments.compression.tables import bins, nearest_phi
+from ratd.experiments.compression.tables import nearest_phi, shared_bins
 
 __all__ = ["near", "of_repeats", "parted", "pull_keys"]
 
@@ -61,13 +62,13 @@ def of_repeats(sets, repeats, entries=None, pulled=None):
     found |= {f"repeats.over_first_{phi:g}": geometric_mean(ratios) for phi, ratios in every.items() if ratios}
     if entries is not None and pulled is not None:
         ratios = _strengths(entries, pulled)
-        found |= {"repeats.pulls": len(ratios), "repeats.strength": Measured(float(ratios.mean()), _error(ratios))}
+        found |= {"repeats.pulls": len(ratios), "repeats.strength": Measured(*mean_of(ratios))}
     return found
 
 
 def _differ(first, again):
     """Which clusters have another pressure anywhere, (seeds,) bool."""
-    _, *places = np.intersect1d(*(bins(each["phi"].values) for each in (first, again)), return_indices=True)
+    places = shared_bins(first, again)
     own, other = (each["pressure"].values[:, at] for each, at in zip((first, again), places, strict=True))
     both = np.isfinite(own) & np.isfinite(other)
     return (both & (own != other)).any(axis=1)
@@ -84,7 +85,3 @@ def pull_keys(table):
     """What tells each pull of a table from the others, list of tuple."""
     columns = (np.round(table[name].values, decimals).tolist() for name, decimals in PULL_KEYS.items())
     return list(zip(*columns, strict=True))
-
-
-def _error(values):
-    return float(np.std(values, ddof=1) / np.sqrt(len(values)))

@@ -108,6 +108,12 @@ def bins(phi):
     return np.floor(np.log(phi) / math.log(BIN) + 1e-9).astype(int)
 
 
+def shared_bins(table, other):
+    """Places, in each of two tables of sets, of the bins that both have, two (k,) arrays."""
+    _, *places = np.intersect1d(*(bins(each["phi"].values) for each in (table, other)), return_indices=True)
+    return places
+
+
 def in_bins(run, first, last):
     """Means of a run over bins of the filling factor.
 

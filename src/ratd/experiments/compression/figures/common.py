@@ -7,7 +7,7 @@ import numpy as np
 from ratd.aggregates.strength import compressive_strength_kataoka2013
 from ratd.base.words import plural
 from ratd.experiments.compression.strength import mean_pressure, of_means
-from ratd.experiments.compression.tables import bins
+from ratd.experiments.compression.tables import shared_bins
 from ratd.pictures.style import ONE_COLUMN, logarithmic, new_figure
 from ratd.pipeline import io
 
@@ -202,8 +202,7 @@ def over(table, other):
     -------
     phi, ratio, error : (k,) array
     """
-    numbers = [bins(each["phi"].values) for each in (table, other)]
-    _, own, others = np.intersect1d(*numbers, return_indices=True)
+    own, others = shared_bins(table, other)
     both = np.stack([table["pressure"].values[:, own], other["pressure"].values[:, others]], axis=1)
     phi = table["phi"].values[own]
     static = phi > max(each["static_from"].values[0] for each in (table, other))
