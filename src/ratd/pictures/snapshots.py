@@ -19,7 +19,7 @@ CROWDED = 0.98
 FARTHEST = 2.0
 """Half width of the pictures in the greatest distance of a monomer in the first one; what flew farther is not shown."""
 
-DRIVE_NAMES = {"prescribed": "driven", "torque": "driven by a torque", "literal": "printed terms of the frame"}
+DRIVE_NAMES = {"prescribed": "driven", "torque": "driven by a torque", "literal": "printed terms"}
 """Drive of the code -> what it is, for people."""
 
 

@@ -10,7 +10,8 @@ from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import contact_field, new_state
-from ratd.experiments.spin_up.contact_law import contact_law, printed_factors
+from ratd.experiments.evolve import evolve
+from ratd.experiments.spin_up.contact_law import contact_law, printed_factors, printed_twist
 from ratd.experiments.spin_up.figures.formulae import MEDIAN
 from ratd.experiments.spin_up.figures.formulae import formulae as figure
 from ratd.experiments.spin_up.formulae import (
@@ -52,6 +53,23 @@ def test_one_constant_of_a_contact_is_as_printed_and_no_other(formula):
         assert abs(value / expected[place] - 1) > 0.02
         expected[place] = value
     np.testing.assert_allclose(constants(jkr(**printed_factors(formula, NU))), expected, rtol=1e-12)
+
+
+def test_by_the_printed_sign_of_a_twist_two_monomers_turn_against_each_other_ever_faster():
+    material = MATERIALS["q-S"]
+    stiffness = printed_factors("twisting_stiffness", NU)["twisting_stiffness"]
+    plus = jkr(damping="none")._replace(twisting_stiffness=-stiffness)
+    spin = [[0, 0, 1e4], [0, 0, -1e4]]
+    pair = Grain([[0, 0, 0], [0, 0, 39.95e-9]], [20e-9, 20e-9], "q-S")
+    options = {"contacts": pair.contacts, "duration": 10e-9, "balance": None}
+    run = evolve(pair.position, pair.radius, spin=spin, material="q-S", law=plus, **options)
+    inertia = 0.4 * material.density * 4 / 3 * np.pi * 20e-9**5
+    apart = 2 * np.sqrt(run["kinetic_spin"] / inertia)
+    assert apart[-1] > 1e5 * apart[0]
+    late = apart[-20:].diff("record") / run["time"][-20:].diff("record")
+    np.testing.assert_allclose(late, printed_twist(20e-9, material), rtol=1e-3)
+    used = evolve(pair.position, pair.radius, spin=spin, material="q-S", law=jkr(), **options)
+    assert abs(used["spin"]).max() < 1.01e4
 
 
 def test_the_law_of_the_paper_has_all_formulae_as_printed_and_no_damping():

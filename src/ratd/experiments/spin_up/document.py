@@ -234,7 +234,7 @@ def findings(data, fits):
     values |= beside.of_ways(data.tables["parameters"]) | beside.of_pairs(data.pairs) | beside.of_overlap()
     for material, table in data.others.items():
         values |= {f"{material} {name}": value for name, value in beside.of_ways(table).items()}
-    values |= beside.of_formulae(data.tables["formulae"])
+    values |= beside.of_formulae(data.tables["formulae"]) | beside.of_printed_twist()
     values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
     values |= beside.composition_tables()
     values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)

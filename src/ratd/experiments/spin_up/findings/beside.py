@@ -10,6 +10,7 @@ from ratd.experiments.spin_up.calibration import PRINTED_STEP
 from ratd.experiments.spin_up.cells import MATERIALS, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
+from ratd.experiments.spin_up.contact_law import printed_twist
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.formulae import DAMPING, OWN, formula_effects
 from ratd.experiments.spin_up.pairs import eq35_omega, force_controlled_omega
@@ -23,7 +24,7 @@ from ratd.laws.johnson_kendall_roberts import dissipation_time
 from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
-    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs",
+    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs", "of_printed_twist",
     "of_printed_pace", "of_printed_pairs", "of_ways", "recomputed",
 ]  # fmt: skip
 
@@ -247,6 +248,11 @@ def of_overlap():
         for radius in PAIR_RADII
     ]
     return {"contact.least": min(overlaps), "contact.most": max(overlaps)}
+
+
+def of_printed_twist(radius=20e-9, duration=1e-9):
+    """How fast two q-S monomers turn against each other after a time [rad/s] by Eq. 17 as printed."""
+    return {"printed.twist": printed_twist(radius, get_material("q-S")) * duration}
 
 
 def of_heat(size, strength=100.0):
