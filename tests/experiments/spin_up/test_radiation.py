@@ -87,6 +87,20 @@ def test_gas_drag_is_that_of_a_turning_sphere():
     assert gas_drag(size) / (flux * lever) == pytest.approx(1.0, rel=1e-4)
 
 
+@pytest.mark.parametrize("size", [5e-8, 2e-7, 6e-7, 3e-6])
+@pytest.mark.parametrize("around", [DIFFUSE, HOT_STAR, THIN_GAS])
+def test_omega_is_that_of_dustpol(size, around):
+    """A public code of the authors of the theory, in its units: erg, cm, years (DustPOL-py, disrupt.py)."""
+    strength, density = 30.0, 3.3
+    a, wavelength, gas = size * 100, around.wavelength * 100, around.hydrogen / 1e6
+    efficiency = 0.4 if a > wavelength / 1.8 else 2.0 * (wavelength / a) ** -2.7
+    torque = a**2 * around.anisotropy * strength * 8.64e-13 * wavelength * efficiency / 2.0
+    slowed = 30.0 / gas * math.sqrt(100.0 / around.temperature)
+    years = 8.74e9 * a * density / 3.0 * slowed / (1.0 + 4.0e-6 * strength ** (2.0 / 3.0) * slowed / a)
+    theirs = torque * years * YEAR / (8.0 * math.pi * density * a**5 / 15.0)
+    assert theirs / omega_rat(size, strength, around) == pytest.approx(1.003, abs=0.001)
+
+
 def test_infrared_damping_as_printed_and_from_absorption():
     """Draine (2011): the printed 0.4 is that of graphite, and twice that of silicate."""
     assert infrared_damping(1e-7, 1.0) == pytest.approx(0.4)

@@ -2,8 +2,8 @@
 
 Radiative torques against drag by gas and by the grain's own infrared light, after Hoang et al. (2019, Nature Astronomy
 3, 766), Hoang (2019, ApJ 876, 13) and Hoang (2020, Galaxies 8, 52), in SI units. Their rounded numbers are no input
-here, but for `INFRARED`; how far they are from these formulae stands with each function. They are quoted from memory
-and from codes that use them, since the text of the papers was not at hand.
+here, but for `INFRARED`; how far they are from these formulae stands with each function. The text of the papers was not
+at hand; the formulae are those of DustPOL-py, a public code of the same group (Tram, Lee & Hoang).
 """
 
 import math
