@@ -33,6 +33,8 @@ KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against eac
 PRODUCTION = "production"
 MOVED = 1e-12
 """Distance [m] by which the start of a repeat is moved."""
+UNWAITING = {"pace": 0.004, "unrest": 1.0}
+"""Of a spin-up that never waits, as slow as one of epsilon = 0.004, but has a drag."""
 WORDS = {"drive": DRIVES, "integrator": ("semi-implicit", "leapfrog")}
 """What is changed to a word, and the words."""
 
@@ -45,7 +47,7 @@ def compute(settings, progress=None):
     settings : dict
         material, type, a_eff [m], seed, ``vary``: name -> list of values. Names: stretch, unrest, pace, drag, drive,
         epsilon (arguments of `ratd.spin_up`), longest, displacement, travel, calming (of the semi-implicit step),
-        integrator, moved (seeds of random shifts of the start).
+        integrator, moved (seeds of random shifts of the start), unwaiting (drag of a spin-up of `UNWAITING`).
     progress : callable, optional
         Called with a sentence after each run.
 
@@ -70,6 +72,8 @@ def _arguments(vary, value):
         return {"integrator": semi_implicit(**(STEP | {vary: value}))}
     if vary == "integrator":
         return {"integrator": leapfrog()}
+    if vary == "unwaiting":
+        return {"drag": value, "integrator": leapfrog()} | UNWAITING
     if vary in (PRODUCTION, "moved"):
         return {}
     return {vary: value}
