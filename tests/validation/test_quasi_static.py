@@ -39,6 +39,13 @@ def test_a_grain_is_spun_up_in_every_way():
     assert production["steps_mass_75"] < production["steps"] and production["axis_ratio_first_loss"] > 1.0
 
 
+def test_a_spin_up_that_never_waits_takes_more_steps_and_has_its_drag():
+    settings = {"material": "q-S", "type": "BAM2", "a_eff": 75e-9, "seed": 1, "vary": {"unwaiting": [1.0]}}
+    production, unwaiting = compute(settings)
+    assert unwaiting["vary"] == "unwaiting" and unwaiting["steps"] > 5 * production["steps"]
+    assert unwaiting["omega_first_loss"] == pytest.approx(production["omega_first_loss"], rel=0.03)
+
+
 def looks(mass, tilt, turns=None, drag=1.0):
     turns = np.arange(len(mass), dtype=float) if turns is None else turns
     columns = {"mass_fraction": mass, "tilt": tilt, "turns": turns, "roundness": np.full(len(mass), 0.8)}

@@ -50,6 +50,7 @@ SHOWN = {
     ("moved", 1.0): "start moved 1 pm",
     ("integrator", 1.0): "explicit step",
     ("epsilon", 0.001): "no wait, ε 0.001",
+    ("unwaiting", 1.0): "no wait, but drag",
     ("drive", 1.0): "torque",
 }
 """What is changed, with its name on the figure; the names of its slots begin with both."""
@@ -231,7 +232,7 @@ def _means(table, own):
     BA of 300 nm.
     """
     values, steady = {}, {mark: [] for mark in MARKS}
-    for vary, value in (*SHOWN, ("epsilon", 0.004)):
+    for vary, value in (*SHOWN, ("epsilon", 0.004), ("unwaiting", 0.1)):
         pairs = _paired(table, own, vary, value)
         for mark in MARKS:
             found = geometric_mean(pairs[mark] / pairs[f"{mark}_own"])
@@ -328,7 +329,9 @@ def _torque(table, own):
 def _slow(table, own):
     """Beside spin-ups that do not wait and the explicit step, of all types together, and a quarter of each."""
     values = {}
-    for vary, value in (("integrator", 1.0), ("epsilon", 0.004), ("epsilon", 0.001)):
+    for vary, value in (
+        ("integrator", 1.0), ("epsilon", 0.004), ("epsilon", 0.001), ("unwaiting", 1.0), ("unwaiting", 0.1),
+    ):  # fmt: skip
         pairs = _paired(table, own, vary, value)
         for mark in MARKS:
             values[f"{vary} {value:g} {mark}"] = _text(median_of(pairs[mark] / pairs[f"{mark}_own"]))

@@ -24,8 +24,10 @@ from ratd.experiments.spin_up.findings.beside import (
 )
 from ratd.experiments.spin_up.findings.claims import all_of, claims, grown_claims, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import MARK, of_drive, strength_omega, what_contacts_hold
-from ratd.experiments.spin_up.findings.fragments import of_all_that_left
+from ratd.experiments.spin_up.findings.fragments import of_all_that_left, of_shares
+from ratd.experiments.spin_up.findings.law import of_exponents_apart
 from ratd.experiments.spin_up.findings.radiation import NONE, of_radiation
+from ratd.experiments.spin_up.findings.shapes import of_stretch
 from ratd.pictures.style import save
 
 ROOT = Path(__file__).parents[3]
@@ -256,6 +258,55 @@ def test_the_last_contact_is_beside_the_first_loss(data):
     assert late["d.holds to the last"] == "no" and late["d.to the last"].value == pytest.approx(30.0)
 
 
+def test_a_quarter_at_omega_disr_is_told_of_small_and_large_ba(data):
+    large = data.driven["nm"] > 280
+    off = np.where(large, 1.5, 1.0)
+    found = told(data, omega_disr=off * data.driven[MARK])
+    assert found["d.holds quarter BA small"] == "yes" and found["d.holds quarter BA large"] == "no"
+    assert found["d.disr over quarter BA large"].value == pytest.approx(1.5)
+    assert told(data, omega_disr=1.1 * data.driven[MARK])["d.holds quarter BAM"] == "yes"
+    part = found["d.in abstract"], found["d.large in abstract"]
+    own = (off * data.driven[MARK]).between(1e8, 1e9)
+    assert part == (own.mean(), own[large].mean())
+
+
+def test_large_grains_that_are_drawn_out_have_moved_their_monomers():
+    def file(kind, stretch):
+        grains = {"a_eff": [400e-9, 400e-9, 100e-9], "axis_ratio_first_loss": [2.0 * stretch, 2.0 * stretch, 90.0]}
+        axes = {"axis_a_start": [1.0, 1.0, 1.0], "axis_c_start": [2.0, 2.0, 2.0]}
+        columns = {name: ("row", values) for name, values in (grains | axes).items()}
+        return xr.Dataset(columns, attrs={"type": kind, "material": "q-S"})
+
+    found = of_stretch("d", [file("BA", 3.0), file("BAM1", 1.0), file("BAM2", 1.0)])
+    assert found["d.stretch BA"].value == pytest.approx(3.0) and found["d.stretch BAM2"].value == pytest.approx(1.0)
+    assert (found["d.holds stretch BA"], found["d.holds stretch BAM"]) == ("yes", "no")
+
+
+def test_three_exponents_fit_what_one_does_not(data):
+    rng = np.random.default_rng(0)
+    table = data.driven[data.driven["material"] == "q-S"]
+    table = table.assign(n_contacts=table["n_contacts"] * np.exp(0.3 * rng.normal(size=len(table))))
+    logs = {name: np.log(table[name]) for name in ("n_contacts", "n_monomers", "filling_factor")}
+
+    def scatter(omega):
+        found = of_exponents_apart(table.assign(omega_disr=omega / table["a_eff"]))
+        return found["predict.one BA"], found["predict.three BA"]
+
+    one, three = scatter(np.exp(0.5 * logs["n_contacts"] + 0.5 * logs["filling_factor"]))
+    assert max(one, three) < 1e-9
+    one, three = scatter(np.exp(0.5 * logs["n_contacts"] - 0.2 * logs["n_monomers"]))
+    assert one > 0.05 and three < 1e-9
+
+
+def test_shares_of_the_mass_are_told_of_each_small_size(data):
+    fragments = data.fragments[document.DRIVEN]
+    found = of_shares("d", fragments[fragments["type"] == "BAM2"])
+    for size in (50, 100, 150):
+        own = [value.value for name, value in found.items() if name.startswith(f"d.fragments BAM2 {size} nm ")]
+        assert len(own) == 4 and sum(own) == pytest.approx(100.0)
+    assert found["d.fragments BAM2 50 nm 1 monomer"].value > found["d.fragments BAM2 150 nm 1 monomer"].value
+
+
 def test_pieces_of_a_few_monomers_are_weighed_up_to_the_last_contact():
     def run(few):
         pieces = {"fragment_mass": ("fragment", [few, 1.0 - few]), "fragment_n_monomers": ("fragment", [3, 4])}
@@ -290,13 +341,6 @@ def test_porosities_are_judged_with_their_errors(data):
     # near the limit of a tenth nobody can say
     near = grown_claims(data.grown.assign(porosity=np.where(small, 0.365, 0.85 + 3.0 * rising) + scatter))
     assert near["g.holds porosity BA least"] == "open" and near["g.holds porosity BA stays"] == "no"
-
-
-def test_a_quarter_is_at_omega_disr_by_the_median_of_a_type(data):
-    near = data.driven["omega_mass_75"] * np.where(data.driven["type"] == "BA", 1.5, 1.1)
-    found = told(data, omega_disr=near)
-    assert (found["d.holds quarter BA"], found["d.holds quarter BAM"]) == ("no", "yes")
-    assert found["d.disr over quarter BAM2"].value == pytest.approx(1.1)
 
 
 def test_grains_that_never_lose_a_quarter_have_it_in_a_monomer_or_a_pair(data):

@@ -101,6 +101,14 @@ def test_omega_is_that_of_dustpol(size, around):
     assert theirs / omega_rat(size, strength, around) == pytest.approx(1.003, abs=0.001)
 
 
+def test_light_that_turns_grains_at_1e9_and_how_warm_it_makes_them(table):
+    found = of_radiation(table.assign(omega_first_loss=table["omega_mass_75"]), table, draws=0)
+    for size in (50, 100, 300):
+        strength = found[f"radiation.{size} billion"]
+        assert omega_rat(size * 1e-9, strength, coefficient=infrared_of("q-S")) == pytest.approx(1e9)
+        assert found[f"radiation.{size} billion K"] == pytest.approx(grain_temperature(strength))
+
+
 def test_infrared_damping_as_printed_and_from_absorption():
     """Draine (2011): the printed 0.4 is that of graphite, and twice that of silicate."""
     assert infrared_damping(1e-7, 1.0) == pytest.approx(0.4)

@@ -17,12 +17,12 @@ from ratd.base.errors import FileError
 from ratd.base.units import NM
 from ratd.experiments.spin_up.findings import beside, claims, ensemble
 from ratd.experiments.spin_up.findings.fragments import of_all_that_left, of_exponents, of_shares
-from ratd.experiments.spin_up.findings.law import of_curve, of_law, of_prediction
+from ratd.experiments.spin_up.findings.law import of_curve, of_exponents_apart, of_law, of_prediction
 from ratd.experiments.spin_up.findings.literature import of_literature
 from ratd.experiments.spin_up.findings.mark_rules import of_mark_rules
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
-from ratd.experiments.spin_up.findings.shapes import of_shapes
+from ratd.experiments.spin_up.findings.shapes import of_shapes, of_stretch
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
 from ratd.experiments.spin_up.pulled import read_pulled
 from ratd.experiments.spin_up.eq33 import fit_ensemble
@@ -93,6 +93,8 @@ class Data(NamedTuple):
         All grains as grown, and those that were spun up, with Eq. 33 as printed.
     recomputed : pandas.DataFrame or None
         Grains of `printed` that the queue has computed anew.
+    files : dict of str to list of xarray.Dataset
+        Drive -> what the queue has made.
     fragments : dict of str to pandas.DataFrame
         Drive -> fragments.
     firm : pandas.DataFrame
@@ -122,6 +124,7 @@ class Data(NamedTuple):
     driven: pd.DataFrame
     printed: pd.DataFrame
     recomputed: pd.DataFrame | None
+    files: dict
     fragments: dict
     firm: pd.DataFrame
     runs: dict
@@ -191,6 +194,7 @@ def read_data(data=DATA):
         driven=ensemble.beside_print(spun_up_table(files, grown)),
         printed=ensemble.beside_print(printed),
         recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
+        files={DRIVEN: files, PRINTED: spun_up_files(anew)},
         fragments={
             DRIVEN: spun_up_fragments(files),
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
@@ -235,9 +239,11 @@ def findings(data, fits):
     for material, table in data.others.items():
         values |= {f"{material} {name}": value for name, value in beside.of_ways(table).items()}
     values |= beside.of_formulae(data.tables["formulae"]) | beside.of_printed_twist()
-    values |= of_curve(data.driven, data.grown) | of_prediction(data.driven)
+    values |= of_curve(data.driven, data.grown) | of_prediction(data.driven) | of_exponents_apart(data.driven)
     values |= beside.composition_tables()
     values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)
+    for letter, drive in (("d", DRIVEN), ("p", PRINTED)):
+        values |= of_stretch(letter, data.files[drive])
     printed = load(*CONFIGS).config["literal"]
     pace = printed["angular_acceleration"], printed["timestep_factor"]
     values |= {"p.acceleration": pace[0], "p.step": pace[1]}

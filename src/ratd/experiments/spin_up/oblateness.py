@@ -35,13 +35,15 @@ def oblate_share(table, when):
     return *mean_of(oblate[known], cell_of(table[known])), int(oblate.sum()), int(known.sum())
 
 
-def oblate_change(table):
+def oblate_change(table, by_cell=True):
     """What the share of oblate grains gains from rest to omega_disr, of the grains whose shape is known at both.
 
     Parameters
     ----------
     table : pandas.DataFrame
         One row a grain, of one drive.
+    by_cell : bool
+        Whether all cells count alike; otherwise all grains do, where some cells have one or two.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def oblate_change(table):
     """
     (known, before), (known_after, after) = (_shapes(table, when) for when in ("start", "disr"))
     both = known & known_after
-    return mean_of(after[both].astype(float) - before[both], cell_of(table[both]))
+    return mean_of(after[both].astype(float) - before[both], cell_of(table[both]) if by_cell else None)
 
 
 def _shapes(table, when):

@@ -42,7 +42,8 @@ def of_ways(table):
     """What the rolling limit and the viscous time do to omega_disr, from the table of Fig. 9 of driven grains.
 
     Of the rolling limits, a type each, the median that is farthest from 1. ``ways.TYPE xi quarter`` is what `ROLLING`
-    does to the mark of the document, as a geometric mean.
+    does to the mark of the document, as a geometric mean. ``xi mean``, ``xi single`` and those of ``viscous``: the
+    geometric mean of omega_disr, and the least and the most of single grains, at `ROLLING` and at that time.
     """
     values, held = {}, []
     for kind, rows in effect(table, "xi_c", "omega_disr").groupby("type"):
@@ -53,13 +54,24 @@ def of_ways(table):
     values["ways.holds xi"] = all_of(held)
     for kind, rows in table[np.isclose(table[PARAMETERS["xi_c"]], ROLLING, atol=0.0)].groupby("type"):
         values[f"ways.{kind} xi quarter"] = geometric_mean(rows[f"{MARK}_ratio"].dropna())
+        values |= _single(f"ways.{kind} xi", rows["omega_disr_ratio"])
     time, printed = VISCOUS_EFFECT
+    other = (table["type"] == "BAM2") & np.isclose(table[PARAMETERS["T_vis"]], time, atol=0.0)
+    values |= _single("ways.BAM2 viscous", table.loc[other, "omega_disr_ratio"])
     slow = effect(table, "T_vis", "omega_disr")
     (row,) = slow[(slow["type"] == "BAM2") & np.isclose(slow["value"], time, atol=0.0)].to_dict("records")
     values["ways.BAM2 viscous"] = Measured(row["median"] - 1.0, row["error"])
     half = 0.5 * (printed - 1.0)
     values["ways.holds viscous"] = is_within(values["ways.BAM2 viscous"], half, 3.0 * half)
     return values
+
+
+def _single(start, ratios):
+    """Geometric mean of some ratios, and the least and the most of them as a text."""
+    return {
+        f"{start} mean": geometric_mean(ratios.dropna()),
+        f"{start} single": f"{ratios.min():.2f} to {ratios.max():.2f}",
+    }
 
 
 def of_pairs(tables):

@@ -12,7 +12,7 @@ import pandas as pd
 from ratd.base.statistics import equal_weights, mean_of, rank_correlation, slope_error, slope_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
-from ratd.experiments.spin_up.findings.ensemble import middle, of_class
+from ratd.experiments.spin_up.findings.ensemble import CLASSES, middle, of_class
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.fragmentation import fragment_shares
 from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
@@ -32,6 +32,8 @@ FIGURE_6 = (200, 350, 500)
 """Sizes [nm] of the grains of Fig. 6, of which the paper tells the shapes."""
 SHOWN = "a-C"
 """Their material."""
+ABSTRACT = (1e8, 1e9)
+"""omega_disr [rad/s] of the abstract, 1e8 to 1e9."""
 SURE = 2.0
 """Standard errors from which on a difference is no chance."""
 
@@ -85,6 +87,8 @@ def _where(letter, table):
         f"{letter}.disr over print": ratio,
         f"{letter}.holds level": is_within(ratio, 0.8, 1.25),
         f"{letter}.holds range": "yes" if 2.5e8 < low and high < 1e10 else "no",
+        f"{letter}.in abstract": float(table["omega_disr"].between(*ABSTRACT).mean()),
+        f"{letter}.large in abstract": float(of_class(table, "large")["omega_disr"].between(*ABSTRACT).mean()),
     }
     (material, kind, size), _ = FIRST_LOSS
     shown = table[(table["material"] == material) & (table["type"] == kind) & np.isclose(table["a_eff"], size)]
@@ -125,8 +129,11 @@ def _how(letter, table, fragments):
         values[f"{letter}.lost at disr {kind}"] = 100.0 * _by_type(lost, table)[kind].value
     apart = _by_type(table["omega_disr"] / table[MARK], table)
     values |= {f"{letter}.disr over quarter {kind}": value for kind, value in apart.items()}
-    for name, kinds in (("BA", ("BA",)), ("BAM", BAM)):
-        values[f"{letter}.holds quarter {name}"] = all_of(is_within(apart[kind], 0.8, 1.25) for kind in kinds)
+    values[f"{letter}.holds quarter BAM"] = all_of(is_within(apart[kind], 0.8, 1.25) for kind in BAM)
+    for name in CLASSES:
+        part = of_class(table[table["type"] == "BA"], name)
+        ratio = values[f"{letter}.disr over quarter BA {name}"] = median(part["omega_disr"] / part[MARK], cell_of(part))
+        values[f"{letter}.holds quarter BA {name}"] = is_within(ratio, 0.8, 1.25)
     half = fragments[fragments["half"]].groupby("grain")
     pieces = _by_type(half["mass_fraction"].max(), half[["material", "type", "a_eff"]].first())
     for kind, piece in pieces.items():
@@ -169,7 +176,7 @@ def _shapes(letter, table):
         end = Measured(share, error)
         values[f"{letter}.oblate {name} disr"] = Measured(100 * end.value, 100 * end.error)
         values[f"{letter}.oblate {name} change"] = Measured(100 * change.value, 100 * change.error)
-        whole = oblate_change(part[part["mass_fraction_disr"] >= WHOLE])
+        whole = oblate_change(part[part["mass_fraction_disr"] >= WHOLE], by_cell=False)
         values[f"{letter}.oblate whole {name} change"] = Measured(*(100 * number for number in whole))
         more = all_of([is_above(change, 0.0), is_above(end, 0.5)])
         values[f"{letter}.holds oblate {name}"] = is_below(change, 0.0) if name == "small BA" else more

@@ -183,11 +183,15 @@ def _what_is_left(grown, table):
     """Marks above the firm bound of the grain as grown: what is left of a grain may turn faster than the whole.
 
     ``bound.large above most`` is how many large grains could not reach the printed omega even if they held as many
-    times their bound as any large one of their type that was spun up, at the paper's mark.
+    times their bound as any large one of their type that was spun up, at the paper's mark; ``bound.all above most`` the
+    same of all sizes. ``bound.most left`` is the most that any holds.
     """
     values = {f"bound.over {mark}": int((table[mark] > table["firm_bound"]).sum()) for mark in (MARK, "omega_disr")}
-    above = total = 0
+    above = total = above_of_all = 0
+    every = table["omega_disr"] / table["firm_bound"]
     for kind in TYPES:
+        own = grown[grown["type"] == kind]
+        above_of_all += int((own["printed"] > float(every[table["type"] == kind].max()) * own["firm_bound"]).sum())
         rows = of_class(table[table["type"] == kind], "large")
         over = rows["omega_disr"] / rows["firm_bound"]
         most = float(over.max())
@@ -195,7 +199,8 @@ def _what_is_left(grown, table):
         above += int((own["printed"] > most * own["firm_bound"]).sum())
         total += len(own)
         values |= {f"bound.{kind} large most": most, f"bound.{kind} large over": float((over > 1.0).mean())}
-    return values | {"bound.large above most": above, "bound.large": total}
+    values |= {"bound.large above most": above, "bound.large": total}
+    return values | {"bound.all above most": above_of_all, "bound.most left": float(every.max())}
 
 
 def what_contacts_hold(grown, firm, table):
@@ -227,6 +232,7 @@ def what_contacts_hold(grown, firm, table):
         "bound.largest below": float(grown.loc[~above, "nm"].max()),
         "bound.load": float(load.median()),
         "bound.small omega": float((grown["printed"] < 5e8).mean()),
+        "bound.in abstract": float(grown["printed"].between(1e8, 1e9).mean()),
         "bound.least printed": float(grown["printed"].min()),
         "bound.most printed": float(grown["printed"].max()),
         "bound.spun": len(table),
@@ -258,5 +264,8 @@ def what_contacts_hold(grown, firm, table):
             for mark in ("omega_first_loss", MARK):
                 values[f"{start} {mark}"] = median(rows[mark] / rows["firm_bound"], cell_of(rows))
             values[f"{start} strength"] = median(strength[rows.index] / rows[MARK], cell_of(rows))
+            # Eq. 27 has a_eff and no filling factor: 2/a_eff sqrt(S/rho)
+            plain = strength[rows.index] * rows["filling_factor"] ** (1.0 / 6.0)
+            values[f"{start} strength by Eq. 27"] = median(plain / rows[MARK], cell_of(rows))
             values[f"{start} strength over print"] = median(strength[rows.index] / rows["printed"], cell_of(rows))
     return values

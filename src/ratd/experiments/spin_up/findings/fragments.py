@@ -4,17 +4,28 @@ import numpy as np
 
 from ratd.base.statistics import mean_of
 from ratd.base.measured import Measured
+from ratd.experiments.spin_up.cells import size_key
 from ratd.experiments.spin_up.fragmentation import exponents, fragment_shares, size_class
 
 __all__ = ["of_all_that_left", "of_exponents", "of_shares"]
 
+SMALL = (50, 100, 150)
+"""Sizes [nm]."""
 FEW = 3
 """Greatest number of monomers of a piece of "a few"."""
 
 
 def of_shares(letter, fragments):
-    """Where the mass goes that leaves while the first half does: shares [%] by type and `size_class`."""
+    """Where the mass goes that leaves while the first half does: shares [%] by type and `size_class`.
+
+    Of the small sizes (`SMALL`) one by one too, since there they fall with size.
+    """
     values = {}
+    sizes = size_key(fragments["a_eff"]) / 1000.0
+    for size in SMALL:
+        for row in fragment_shares(fragments[sizes == size], "half").to_dict("records"):
+            start = f"{letter}.fragments {row['type']} {size} nm {row['class']}"
+            values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
     for name, part in fragments.groupby(size_class(fragments["a_eff"]), observed=True):
         for row in fragment_shares(part, "half").to_dict("records"):
             start = f"{letter}.fragments {row['type']} {name} {row['class']}"

@@ -15,7 +15,7 @@ from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, unit_of
 
-__all__ = ["of_curve", "of_law", "of_prediction"]
+__all__ = ["of_curve", "of_exponents_apart", "of_law", "of_prediction"]
 
 EXAMPLE = ("q-S", "BAM1", 400 * NM)
 """The grain of which the document works out omega."""
@@ -90,18 +90,44 @@ def _of_cell(table, material, kind, size):
 
 
 def _farthest(table, kind, row):
-    """The size whose mean is farthest from the curve, by what factor, and the same of the sizes from `LARGER` on."""
+    """The size whose mean is farthest from the curve, by what factor, and the same of the sizes from `LARGER` on.
+
+    ``chi2`` is the sum over the sizes of the squared distance of the mean from the curve, in its standard errors.
+    """
     table = table[table[MARK].astype(float) > 0.0]
     off = np.log(
         table[MARK].astype(float) / size_law_unit(table) / curved_law_value(table["a_eff"], *row[["C", "p", "q"]])
     )
-    means = off.groupby(np.round(table["a_eff"] / NM)).mean()
+    by_size = off.groupby(np.round(table["a_eff"] / NM))
+    means = by_size.mean()
     larger = means[means.index >= LARGER / NM]
     return {
+        f"curve.{kind} chi2": float(((means / by_size.sem()) ** 2).sum()),
         f"curve.{kind} farthest": math.exp(means.abs().max()),
         f"curve.{kind} farthest nm": int(means.abs().idxmax()),
         f"curve.{kind} farthest above": math.exp(larger.abs().max()),
     }
+
+
+def of_exponents_apart(table):
+    """Scatter of ln omega_disr about Eq. 33, fitted to each material and type, and with three exponents for its one.
+
+    ``predict.one TYPE``, of N_con phi, and ``predict.three TYPE``, of N_con/N_mon, N_mon and phi, with the grains that
+    were fitted; the paper's Sect. 7.4 finds them alike.
+    """
+    values = {}
+    for kind, grains in table[table["omega_disr"] > 0].groupby("type"):
+        squares = {"one": [], "three": []}
+        for _, own in grains.groupby("material"):
+            contacts, monomers, filling = (np.log(own[name]) for name in ("n_contacts", "n_monomers", "filling_factor"))
+            known = np.log(own["omega_disr"] * own["a_eff"])
+            columns = {"one": [contacts + filling], "three": [contacts - monomers, monomers, filling]}
+            for name, parts in columns.items():
+                design = np.column_stack([np.ones(len(own)), *parts])
+                best, *_ = np.linalg.lstsq(design, known.to_numpy(), rcond=None)
+                squares[name].append((known.to_numpy() - design @ best) ** 2)
+        values |= {f"predict.{name} {kind}": math.sqrt(np.concatenate(own).mean()) for name, own in squares.items()}
+    return values
 
 
 def of_prediction(table):

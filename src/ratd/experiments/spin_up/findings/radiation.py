@@ -1,13 +1,15 @@
 """What the document tells of grains that radiation destroys."""
 
 import math
+from functools import partial
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ratd.base.measured import Measured
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES
-from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED
+from ratd.experiments.spin_up.radiation import DIFFUSE, INFRARED, grain_temperature, infrared_of, omega_rat
 from ratd.experiments.spin_up.surviving import COMPUTED, surviving
 
 __all__ = ["NONE", "of_radiation"]
@@ -23,6 +25,8 @@ SURROUNDINGS = {
 """Name of a variant -> what surrounds the grain; the torque goes with the anisotropy."""
 DMT = math.sqrt(4.0 / 3.0)
 """omega that a pull-off force 4/3 as great would hold, over that of JKR; driven grains come to 1.11 to 1.15."""
+BILLION = (50, 100, 300)
+"""Sizes [nm]."""
 FARTHEST = 2.0 * COMPUTED[1]
 """Greatest size [m] that is told: the laws are of grains half as large."""
 NONE = "none"
@@ -67,9 +71,10 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         with " range" the text of both drags. With "over" for "ours" ours over the printed one. "radiation.most error"
         is the greatest relative error of ours for the material of `shown`. For `shown` also, without errors, with
         " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great; for its material, with a
-        name of `SURROUNDINGS`, and as "radiation.most around ours" the greatest factor by which one of them moves it.
+        name of `SURROUNDINGS`, and as "radiation.most around ours" the greatest factor by which one of them moves it;
+        ``radiation.SIZE billion`` and ``radiation.SIZE billion K`` of `_billion`.
     """
-    values = {}
+    values = _billion(shown[0])
     for behind, how in WAYS.items():
         values |= _sizes(table, grown, strengths, behind, mark=mark, **how, **options)
     for key in [key for key in values if key.endswith((" ours", " printed"))]:
@@ -94,6 +99,20 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         ]
         values[f"radiation.most around {law}"] = math.exp(max(moved, default=math.nan))
     return values
+
+
+def _billion(material):
+    """Strength U of light that turns grains at 1e9 rad/s, and how warm they are in it [K], of some sizes [nm]."""
+    values = {}
+    for size in BILLION:
+        excess = partial(_short_of, 1e9, size * NM, infrared_of(material))
+        strength = values[f"radiation.{size} billion"] = math.exp(brentq(excess, 0.0, 30.0))
+        values[f"radiation.{size} billion K"] = float(grain_temperature(strength))
+    return values
+
+
+def _short_of(omega, size, coefficient, log_strength):
+    return math.log(float(omega_rat(size, math.exp(log_strength), coefficient=coefficient)) / omega)
 
 
 def _text(size):

@@ -3,17 +3,22 @@
 import math
 
 import numpy as np
+import pandas as pd
 
-from ratd.base.measured import Measured
+from ratd.base.measured import Measured, median
 from ratd.base.statistics import jackknife_error, mean_of
-from ratd.experiments.spin_up.cells import TYPES
+from ratd.base.units import NM
+from ratd.experiments.spin_up.cells import TYPES, cell_of
 from ratd.experiments.spin_up.findings.claims import BAM, all_of, is_above, is_below, is_within
+from ratd.experiments.spin_up.findings.ensemble import of_class
 from ratd.experiments.spin_up.shapes import LOOKS
 
-__all__ = ["of_shapes", "scatter_ratio"]
+__all__ = ["of_shapes", "of_stretch", "scatter_ratio"]
 
 SAME = 0.1
 """A fractal dimension is steady where its mean changes by less."""
+STRETCHED = 1.1
+"""Axes over those at rest beyond which monomers have moved outward."""
 WORDS = {
     "falls": {"yes": "falls", "no": "does not fall", "open": "may fall"},
     "keep": {"yes": "keep", "no": "do not keep", "open": "may keep"},
@@ -74,6 +79,44 @@ def of_shapes(table):
         **{f"{kind} rises": is_above(rise[kind], 0.0) for kind in TYPES},
     }
     return values | {f"shapes.{name}": WORDS[name.split()[-1]][verdict] for name, verdict in verdicts.items()}
+
+
+def of_stretch(letter, files):
+    """How far large grains have stretched before anything leaves: longest over shortest axis, over the same at rest.
+
+    Parameters
+    ----------
+    letter : str
+        The first letter of the names.
+    files : list of xarray.Dataset
+        Of the queue of spin-ups, one drive.
+
+    Returns
+    -------
+    dict
+        ``d.stretch TYPE``, medians of the grains of class ``large``, and ``d.holds stretch TYPE``, whether they are
+        beyond `STRETCHED`.
+    """
+    tables = [
+        pd.DataFrame({
+            "nm": file["a_eff"].values / NM,
+            "stretch": file["axis_ratio_first_loss"] * file["axis_a_start"] / file["axis_c_start"],
+            "a_eff": file["a_eff"].values,
+        }).assign(type=file.attrs["type"], material=file.attrs["material"])
+        for file in files
+    ]  # fmt: skip
+    table = of_class(pd.concat(tables, ignore_index=True), "large")
+    values = {}
+    for kind, rows in table.groupby("type"):
+        values[f"{letter}.stretch {kind}"] = median(rows["stretch"], cell_of(rows))
+    found = {"BA": ["BA"], "BAM": BAM}
+    verdicts = {
+        f"{letter}.holds stretch {name}": all_of(
+            is_above(values[f"{letter}.stretch {kind}"], STRETCHED) for kind in kinds
+        )
+        for name, kinds in found.items()
+    }
+    return values | verdicts
 
 
 def _together(ratios):
