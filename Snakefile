@@ -74,7 +74,7 @@ rule write_config:
         "workflow/scripts/analyse.py"
 
 
-# What the spin-up made, from what, with what, for archives: `snakemake --cores 2 crate`.
+# What the folder of results holds, from what, with what, for archives: `snakemake --cores 2 crate`.
 rule crate:
     input:
         rules.write_config.output.config,

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.stats import spearmanr
 
 from ratd.base.statistics import (
     binomial_interval,
@@ -11,7 +10,6 @@ from ratd.base.statistics import (
     mean_of,
     median_of,
     quantiles,
-    rank_correlation,
     slope_error,
     slope_of,
     weighted_line,
@@ -157,15 +155,6 @@ def test_the_error_of_the_median_is_that_of_the_medians_of_drawn_samples(weighte
         chosen = np.concatenate([np.flatnonzero(group == names[k]) for k in draw])
         medians.append(quantiles(values[chosen], 0.5, weights[chosen]))
     assert found["error"] == pytest.approx(np.std(medians, ddof=1), rel=1e-9)
-
-
-def test_rank_correlation_is_that_of_spearman():
-    x, noise = np.random.default_rng(6).normal(size=(2, 200))
-    assert rank_correlation(x, np.exp(x)) == pytest.approx(1) and rank_correlation(x, -(x**3)) == pytest.approx(-1)
-    for share in (0.0, 0.3, 1.0):
-        y = share * x + noise
-        assert rank_correlation(x, y) == pytest.approx(spearmanr(x, y).statistic, abs=1e-12)
-    assert np.isnan(rank_correlation([1.0], [2.0]))
 
 
 def test_binomial_intervals_of_wilson():

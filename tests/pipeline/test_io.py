@@ -294,7 +294,7 @@ def test_wrong_content_is_not_written(file, change, said):
 def test_rows_that_do_not_belong_together_are_refused():
     first, second = run_files.run_row(make_run(0)), run_files.run_row(make_run(1))
     second.attrs["drive"] = "literal"
-    with pytest.raises(InputError, match="the same attributes"):
+    with pytest.raises(InputError, match="the same drive"):
         blocks.block([first, second], "spinup", MATERIALS["q-S"])
     with pytest.raises(InputError, match="at least one grain"):
         blocks.block([], "spinup", MATERIALS["q-S"])

@@ -9,6 +9,7 @@ import pytest
 
 from files import make_grain
 from ratd.aggregates.files import grain_row
+from ratd.base.errors import GrainError, InputError
 from ratd.base.materials import MATERIALS
 from ratd.pipeline import queue
 from ratd.pipeline.queue import Table, Task, command, key, state, work
@@ -51,6 +52,34 @@ def test_what_is_there_is_left_out_and_what_fails_is_told(processes):
     assert work(tasks, say=said.append, processes=processes) == 1
     assert sorted(table.rows) == [key(0), key(1), key(3)] and table.written == 1
     assert len(said) == 4 and sum(text.startswith("failed: a velocity is no finite number, 0 s") for text in said) == 1
+
+
+def comes_apart():
+    raise GrainError("the aggregate comes apart")
+
+
+def is_misused():
+    raise InputError("x is 3; allowed: 1 or 2")
+
+
+def test_a_grain_that_cannot_be_made_ends_nothing_else_and_bad_input_ends_all():
+    table, said = Kept(), []
+    tasks = [Task(table, key(0), comes_apart), Task(table, key(1), partial(row, 1))]
+    assert work(tasks, say=said.append) == 1
+    assert table.rows == [key(1)] and said[0].startswith("failed: the aggregate comes apart")
+    with pytest.raises(InputError, match="x is 3"):
+        work([Task(table, key(2), is_misused)], say=said.append)
+
+
+def test_a_row_that_took_long_is_written_at_once(monkeypatch):
+    monkeypatch.setattr(queue, "WRITE_EVERY", 0.1)
+    table = Kept()
+    written = []
+    work(
+        [Task(table, key(0), partial(late, 0)), Task(table, key(1), partial(row, 1))],
+        say=lambda _: written.append(table.written),
+    )
+    assert written == [1, 1]
 
 
 def test_an_error_of_the_program_ends_the_queue_and_nothing_is_lost():
@@ -107,7 +136,7 @@ def test_a_table_that_gets_no_row_any_more_is_still_written():
 def test_a_command_that_waited_reads_what_the_other_one_left(tmp_path):
     """The tables are read with the lock held: rows that were made meanwhile are not made again."""
     held = []
-    lock = tmp_path / "queue.lock"
+    lock = tmp_path / "data/.lock"
 
     def tasks(plan, folder):
         with open(lock, "a") as handle, pytest.raises(BlockingIOError):
@@ -115,8 +144,9 @@ def test_a_command_that_waited_reads_what_the_other_one_left(tmp_path):
         held.append(folder)
         return []
 
-    how = {"config": (), "data": "data", "load": lambda: SimpleNamespace(results=tmp_path), "tasks": tasks}
-    assert command([], module=MODULE, what="rows", **how) == 0 and held == ["data"]
+    data = str(tmp_path / "data")
+    how = {"config": (), "data": data, "load": lambda: SimpleNamespace(results=tmp_path), "tasks": tasks}
+    assert command([], module=MODULE, what="rows", **how) == 0 and held == [data]
 
 
 def test_a_command_tells_of_what_is_left_and_takes_minutes_and_processes(tmp_path, monkeypatch, capsys):
@@ -128,7 +158,7 @@ def test_a_command_tells_of_what_is_left_and_takes_minutes_and_processes(tmp_pat
 
     monkeypatch.setattr(queue, "work", leave_all)
     monkeypatch.setattr(queue.time, "monotonic", lambda: 1000.0)
-    how = {"module": MODULE, "what": "rows", "config": (), "data": "data"}
+    how = {"module": MODULE, "what": "rows", "config": (), "data": str(tmp_path / "data")}
     how["load"] = lambda: SimpleNamespace(results=tmp_path)
     assert command(["--minutes", "2", "--processes", "3"], tasks=lambda plan, folder: [1], **how) == 3
     assert seen == {"until": 1120.0, "processes": 3}

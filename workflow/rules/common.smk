@@ -26,7 +26,7 @@ if workflow.is_main_process:
 if workflow.is_main_process and not workflow.output_settings.dryrun:
     # told again at the very end, below all that Snakemake says of it
     first_error.begin()
-    atexit.register(lambda: print(first_error.kept(), end="", file=sys.stderr))
+    atexit.register(first_error.tell_again)
 
 
 def checked(read, *arguments):

@@ -2,8 +2,8 @@
 from ratd.experiments.compression import plan as compression
 
 COMPRESSION_NAMES = {
-    "set": "|".join(map(re.escape, COMPRESSION.config["sets"])),
-    "pull": "|".join(map(re.escape, COMPRESSION.config["pulls"])),
+    "set": "|".join(map(re.escape, COMPRESSION.config["sets"])) or "(?!)",
+    "pull": "|".join(map(re.escape, COMPRESSION.config["pulls"])) or "(?!)",
     "seed": r"\d+",
     "phi": r"[\d.]+",
 }

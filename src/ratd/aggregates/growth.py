@@ -13,7 +13,7 @@ from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.geometry.shape import centre_of_mass
 
-__all__ = ["MIGRATIONS", "TYPES", "grain_radii", "grow", "grow_with_radii", "smallest_a_eff"]
+__all__ = ["MIGRATIONS", "TYPES", "check_a_eff", "grain_radii", "grow", "grow_with_radii", "smallest_a_eff"]
 
 TYPES = {"BA": 0, "BAM1": 1, "BAM2": 2}
 """Aggregation models by name, with the number of times that a monomer migrates after its first touch."""
@@ -74,7 +74,7 @@ def grow(type, a_eff, material, seed, *, distribution=None, migration="random"):
     if not isinstance(distribution, RadiusDistribution):
         raise InputError(f"distribution is {distribution!r}; it must be a ratd.aggregates.radii.RadiusDistribution.")
     migrations = TYPES[_check_type(type)]
-    a_eff = _check_a_eff(a_eff, type, distribution)
+    a_eff = check_a_eff(a_eff, type, distribution)
     seed = check_seed(seed)
     radius = grain_radii(type, a_eff, material.name, seed, distribution)
     position = _place(radius, material, migrations, migration, _grain_seeds(type, a_eff, material.name, seed)[1])
@@ -179,7 +179,8 @@ def _check_type(type):
     return type
 
 
-def _check_a_eff(a_eff, type, distribution):
+def check_a_eff(a_eff, type, distribution):
+    """a_eff [m] as a float; InputError where no grain of the type can have it, with monomers of the distribution."""
     value = float(a_eff) if is_number(a_eff) else math.nan
     low = smallest_a_eff(type, distribution)
     high = (MOST_MONOMERS * distribution.moment(3)) ** (1.0 / 3.0)

@@ -15,7 +15,6 @@ __all__ = [
     "mean_of",
     "median_of",
     "quantiles",
-    "rank_correlation",
     "slope_error",
     "slope_of",
     "weighted_line",
@@ -171,25 +170,6 @@ def mean_of(values, cell=None):
     scatter = np.full(len(count), square.sum() / (count - 1).sum())
     scatter[several] = square[several] / (count[several] - 1)
     return float(mean_in.mean()), float(np.sqrt(np.sum(scatter / count)) / len(count))
-
-
-def rank_correlation(x, y):
-    """Spearman's correlation of two samples, without regard to ties.
-
-    Parameters
-    ----------
-    x, y : array_like, shape (n,)
-
-    Returns
-    -------
-    float
-        NaN for fewer than two values.
-    """
-    n = len(x)
-    if n < 2:
-        return np.nan
-    ranks = [np.argsort(np.argsort(values)) - 0.5 * (n - 1) for values in (x, y)]
-    return float(np.dot(*ranks) / np.dot(ranks[0], ranks[0]))
 
 
 def jackknife_error(left_out):

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from ratd.aggregates.grain import pressed, seated
-from ratd.base.errors import InputError
+from ratd.base.errors import GrainError
 from ratd.base.jit import jit
 from ratd.drives.free import free
 from ratd.engine.contacts import update_contact_rates
@@ -62,7 +62,7 @@ def relax(grain, *, law=None, timestep_factor=0.125):
 
     Raises
     ------
-    InputError
+    GrainError
         If it comes apart meanwhile, also when its contacts are pressed by `PRESSED` first.
     RuntimeError
         If the grain does not come to rest.
@@ -84,7 +84,7 @@ def relax(grain, *, law=None, timestep_factor=0.125):
         if whole == grain.n_monomers:
             settle(state, law, integrator)
             return state
-    raise InputError(
+    raise GrainError(
         f"As it comes to rest under the law of contact the aggregate comes apart: {whole} of its {grain.n_monomers} "
         "spheres are left in the largest piece; give positions in which its contacts are at rest."
     )

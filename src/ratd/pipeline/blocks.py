@@ -46,8 +46,14 @@ def block(rows, kind, material, attributes=None):
         for name in row.variables:
             if name not in layout.variables:
                 raise InputError(f"block: a file of {kind} has no variable {name!r}")
-        if not _same({name: value for name, value in row.attrs.items() if name not in over_row}, common):
-            raise InputError(f"block: the grains of one file of {kind} must have the same attributes {sorted(common)}")
+        own = {name: value for name, value in row.attrs.items() if name not in over_row}
+        if not _same(own, common):
+            names = sorted(own.keys() | common.keys())
+            other = [
+                name for name in names
+                if not _same({name: own.get(name)}, {name: common.get(name)})
+            ]  # fmt: skip
+            raise InputError(f"block: the grains of one file of {kind} must have the same {', '.join(other)}")
     result = xr.Dataset(attrs=common | (attributes or {}))
     for name, variable in layout.variables.items():
         if name in MATERIAL:

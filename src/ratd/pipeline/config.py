@@ -49,7 +49,10 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
                 name = self.construct_object(key, deep=True)
                 if name in known:
                     raise yaml.constructor.ConstructorError(
-                        None, None, f"the key {name!r} stands in one mapping twice", key.start_mark
+                        None,
+                        None,
+                        f"the key {name!r} stands in one mapping twice; allowed: each key once",
+                        key.start_mark,
                     )
                 known.add(name)
         return super().construct_mapping(node, deep)
@@ -77,12 +80,13 @@ def read_yaml(path):
         return yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
     except OSError as error:
         raise FileError(f"{path}: cannot be read ({error.strerror})") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+    # PyYAML lets the errors of a key that cannot be one, and of a day that is none, through as they are
+    except (yaml.YAMLError, UnicodeDecodeError, TypeError, ValueError) as error:
         place = getattr(error, "problem_mark", None)
         where = f"line {place.line + 1}: " if place else ""
         problem = getattr(error, "problem", None) or error
-        if isinstance(error, yaml.constructor.ConstructorError):
-            raise InputError(f"{path}: {where}{problem}; allowed: each key once") from error
+        if isinstance(error, yaml.constructor.ConstructorError):  # such as a key that stands twice
+            raise InputError(f"{path}: {where}{problem}") from error
         raise InputError(f"{path}: {where}is not YAML ({problem})") from error
 
 

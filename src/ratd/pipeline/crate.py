@@ -19,6 +19,8 @@ __all__ = ["describe"]
 
 PROFILE = "https://w3id.org/ro/wfrun/process/0.5"
 NETCDF = "application/x-netcdf"
+HELD = (".nc", ".csv", ".pdf", ".png", ".svg")
+"""Ends of the names of tables and figures."""
 
 
 def describe(files, settings, say):
@@ -27,7 +29,7 @@ def describe(files, settings, say):
     Parameters
     ----------
     files : sequence of path-like
-        The results; those below the folder of the first one are described.
+        The config, and what is to be there; all tables and figures below the folder of the first are described.
     settings : dict
         Empty.
     say : callable
@@ -39,7 +41,9 @@ def describe(files, settings, say):
         ``crate`` -> JSON, to be written as ``ro-crate-metadata.json`` beside the first file, the config.
     """
     config = Path(files[0])
-    results = sorted({Path(path) for path in files} - {config})
+    held = {path for suffix in HELD for path in config.parent.rglob(f"*{suffix}")}
+    finished = {path for path in held if not any(part.endswith(".partial") for part in path.parts)}
+    results = sorted(({Path(path) for path in files} | finished) - {config})
     crate = ROCrate()
     crate.name = f"Results of ratd in {config.parent.name}"
     crate.description = "Dust aggregates, every monomer integrated: data, tables and figures of a run of the pipeline"

@@ -6,6 +6,7 @@ room for one sentence is taken while there is still some.
 
 import fcntl
 import os
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -31,6 +32,12 @@ def keep(sentence, place=PLACE):
         if not file.read(ROOM).strip():
             file.seek(0)
             file.write(sentence.replace("\n", " ").encode()[:ROOM])
+
+
+def tell_again(place=PLACE):
+    """Print the sentence, if there is one."""
+    if sentence := kept(place):
+        print(f"first error: {sentence}", file=sys.stderr)
 
 
 def kept(place=PLACE):

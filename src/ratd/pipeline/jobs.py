@@ -15,7 +15,7 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError, GrainError, InputError, is_of_one_grain
 from ratd.pipeline import first_error, io
 from ratd.pipeline.kinds import fingerprint
 from ratd.pipeline.partial import Block, Pieces, locked
@@ -57,7 +57,7 @@ def task(script, function, *writes):
 
 @contextmanager
 def failure_told(number, done):
-    """A context in which a grain is made: that its integration fails is told by ``done``, and ends nothing else.
+    """A context in which a grain is made: that it cannot be made is told by ``done``, and ends nothing else.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def failure_told(number, done):
     """
     try:
         yield
-    except RuntimeError as error:
-        if type(error) is not RuntimeError:  # a subclass is no matter of this grain
+    except (RuntimeError, GrainError) as error:
+        if not is_of_one_grain(error):
             raise
         done(number, failure=error)
 

@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from pathlib import Path
 from typing import NamedTuple
 
-from ratd.base.errors import FileError, InputError
+from ratd.base.errors import FileError, GrainError, InputError, is_of_one_grain
 from ratd.pipeline import blocks, io
 from ratd.pipeline.kinds import kind_of
 from ratd.pipeline.partial import locked
@@ -19,7 +19,8 @@ from ratd.pipeline.provenance import canonical, settings_hash
 __all__ = ["Table", "Task", "command", "key", "state", "work"]
 
 WRITE_EVERY = 20.0
-"""Rows of a table that are finished within so long [s] are written together; a kill costs little more than that."""
+"""Rows of a table that are finished within so long [s] are written together, and one that took longer at once: a kill
+costs little more than that."""
 
 
 def key(*numbers):
@@ -138,6 +139,8 @@ def work(tasks, *, until=None, say=print, processes=1):
             # all of them: a table whose rows are all there gets no row more that would have it written
             for table in tables:
                 table.write_if_due()
+            if seconds > WRITE_EVERY:
+                task.table.write()
             say(f"{sentence}, {seconds:.0f} s, {len(left) - done} left")
     finally:
         for table in tables:
@@ -180,7 +183,9 @@ def _timed(make):
     start = time.monotonic()
     try:
         row, sentence = make()
-    except RuntimeError as error:  # of this row alone: the others go on
+    except (RuntimeError, GrainError) as error:
+        if not is_of_one_grain(error):
+            raise
         row, sentence = None, f"failed: {error}"
     return row, sentence, time.monotonic() - start
 
@@ -252,7 +257,7 @@ def command(words, *, module, what, config, data, load, tasks, study=None):
         if arguments.list:
             print(state(tasks(plan, folder), what))
             return 0
-        with locked(Path(plan.results, "queue.lock"), say):
+        with locked(Path(folder, ".lock"), say):
             # read once nobody else writes them: a command that had to wait goes on from what the other one left
             wanted = tasks(plan, folder)
             until = None if arguments.minutes is None else time.monotonic() + 60 * arguments.minutes

@@ -72,6 +72,8 @@ def _is_other(path, rule):
     settings = rule.params.settings
     if callable(settings):
         settings = settings(_Wildcards(rule.get_wildcards(str(path))))
+    if settings is None:  # of a study that the config leaves out: nobody asks for this file
+        return False
     # a job that makes several files may have settings for each
     ways = [settings, *(settings if isinstance(settings, list) else ())]
     return found["code_hash"] != rule.params.task["hash"] or found["settings_hash"] not in map(settings_hash, ways)

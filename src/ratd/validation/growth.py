@@ -8,11 +8,11 @@ to that of a grazing hit.
 """
 
 import numpy as np
+from scipy.stats import spearmanr
 
 from ratd.aggregates.ballistic import place_monomers
 from ratd.aggregates.growth import MIGRATIONS, TYPES, grow, grow_with_radii
 from ratd.base.materials import get_material
-from ratd.base.statistics import rank_correlation
 from ratd.geometry.directions import random_direction, random_normal
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
 from ratd.validation.tables import table_kind
@@ -172,7 +172,7 @@ def depth_correlation(grain):
         Above 0 where the smaller monomers lie deeper.
     """
     centre = np.average(grain.position, axis=0, weights=grain.radius**3)
-    return rank_correlation(grain.radius, np.linalg.norm(grain.position - centre, axis=1))
+    return float(spearmanr(grain.radius, np.linalg.norm(grain.position - centre, axis=1)).statistic)
 
 
 def _row(study, grain, seed, migration):

@@ -222,7 +222,7 @@ def is_hard(table):
 
 def is_fluffy(table):
     """Whether grains are BA of 300 nm, of which there are many, (n,) of bool."""
-    return (table["type"] == "BA") & np.isclose(table["a_eff"], 300 * NM)
+    return (table["type"] == "BA") & np.isclose(table["a_eff"], 300 * NM, atol=0.0)
 
 
 def _means(table, own):

@@ -371,6 +371,7 @@ def test_material_of_ones_own(table):
     [
         (lambda t: t.drop(columns="omega_disr"), {}, "no column 'omega_disr'"),
         (lambda t: t.drop(columns=["filling_factor", "porosity"]), {}, "neither a column 'filling_factor'"),
+        (lambda t: t.assign(mean_monomer_radius=np.nan), {}, "no row has a 'mean_monomer_radius', needed for \"own\""),
         (lambda t: t.drop(columns="mean_monomer_radius"), {}, 'needed for "own"'),
         (lambda t: t.iloc[:0], {}, "no rows"),
         (lambda t: t.assign(drive=["literal"] + ["prescribed"] * (len(t) - 1)), {}, "literal, prescribed; fit one"),

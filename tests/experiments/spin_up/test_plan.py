@@ -66,6 +66,12 @@ def test_quick_is_three_of_each():
         ({"sizes_nm": [0]}, "sizes_nm[0] is 0", "above 0"),
         ({"types": ["BA"], "sizes_nm": [12]}, "sizes_nm[0] is 12", "above 12.6 nm"),
         ({"sizes_nm": [50, 5000]}, "sizes_nm[1] is 5000", "at most 4089 nm"),
+        ({"sizes_nm": [50, 50.0001]}, "sizes_nm[1] is 50.0001, which is within a picometre", "differ by more"),
+        (
+            {"sizes_nm": [61], "types": ["BA"], "growth": {"smallest_nm": 40, "largest_nm": 41}},
+            "sizes_nm[0] is 61: a_eff is",
+            "wider range of radii",
+        ),
         ({"growth": {"sigma_ln": 3.0}}, "growth.sigma_ln is 3.0", "at most 2.5"),
         (
             {"literal": {"angular_acceleration": "1.25e14"}},
@@ -268,6 +274,10 @@ def test_missing_key_is_named():
 def test_text_that_is_not_yaml_is_named_with_its_line(tmp_path):
     file = tmp_path / "broken.yaml"
     file.write_text("materials: [a-C\ntypes: [BA]\n")
+    for text in ("? [1, 2]\n: a\n", "a: 2001-13-45\n", "a: !foo b\n"):
+        (tmp_path / "odd.yaml").write_text(text)
+        with pytest.raises(InputError, match=r"odd.yaml: (is not YAML|line 1: could not determine a constructor)"):
+            load(tmp_path / "odd.yaml")
     with pytest.raises(InputError, match=r"broken.yaml: line 2: is not YAML"):
         load(file)
 

@@ -205,7 +205,7 @@ class Plan:
             values = {self.material_of(cell.law).name for cell in self.cells}
         else:
             values = {cell.names[name] for cell in self.cells}
-        return "|".join(re.escape(value) for value in sorted(values))
+        return "|".join(re.escape(value) for value in sorted(values)) or "(?!)"
 
     def run_files(self, path=RUNS, *, laws=None, clusters=None):
         """Files of all cells, or of those of some laws and clusters, list of str."""

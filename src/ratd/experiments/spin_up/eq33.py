@@ -209,6 +209,11 @@ def _fitted_rows(table, readings, mark):
         numbers = table[needed].astype(float)
     except (TypeError, ValueError) as error:
         raise InputError(f"fit_ensemble: the columns {', '.join(needed)} must hold numbers ({error})") from None
+    if "own" in readings.values() and not (numbers["mean_monomer_radius"] > 0).any():
+        raise InputError(
+            "fit_ensemble: no row has a 'mean_monomer_radius', needed for \"own\"; give mean_monomer_radius=20e-9 "
+            "[m], or a table that tells of the grains as grown"
+        )
     for name in needed:
         if name in ("a_eff", "mean_monomer_radius"):
             _check_size(numbers[name].to_numpy(), f"the column {name!r}")

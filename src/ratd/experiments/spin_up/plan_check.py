@@ -2,7 +2,7 @@
 
 import math
 
-from ratd.aggregates.growth import MOST_MONOMERS, smallest_a_eff
+from ratd.aggregates.growth import MOST_MONOMERS, check_a_eff, smallest_a_eff
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.checks import GREATEST_SEED
 from ratd.base.errors import InputError
@@ -85,13 +85,16 @@ def _sizes(plan):
         return
     largest = (MOST_MONOMERS * radii.moment(3)) ** (1 / 3) / NM
     sizes = plan.config["sizes_nm"]
-    labels = list(map(size_label, sizes))
+    labels, keys = list(map(size_label, sizes)), [round(1e3 * size) for size in sizes]
     for k, size in enumerate(sizes):
         where = f".sizes_nm[{k}] is {size!r}"
         if labels[k] in labels[:k]:
             yield f"{where}, which is the size {labels[k]} nm again; allowed: different sizes"
+        elif keys[k] in keys[:k]:
+            yield f"{where}, which is within a picometre of another; allowed: sizes that differ by more"
         if size > largest:
             yield f"{where}; allowed: at most {math.floor(largest)} nm, the size of {MOST_MONOMERS} monomers"
+            continue
         for kind in plan.config["types"]:
             smallest = smallest_a_eff(kind, radii) / NM
             # the size itself has no room for different radii: all monomers would have to be of the smallest one
@@ -100,6 +103,12 @@ def _sizes(plan):
                     f"{where}; allowed: above {math.ceil(100 * smallest) / 100:g} nm, the size of the fewest monomers "
                     f"that {kind} is made of"
                 )
+                continue
+            try:
+                check_a_eff(size * NM, kind, radii)
+            except InputError as error:
+                yield f"{where}: {error}"
+                break
 
 
 def _paces(plan):

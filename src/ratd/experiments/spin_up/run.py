@@ -116,9 +116,9 @@ def spin_up(
     Returns
     -------
     xarray.Dataset
-        Dimensions ``record``, ``fragment`` (those that left, in their order, then those cut off but still near at the
-        end), ``snapshot`` and ``monomer``; the attributes tell the settings, law and material, ``steps``, ``timestep``
-        [s], ``end_reason``, ``cut_bound`` [rad/s] and the state after relaxation (``initial_...``).
+        Dimensions ``record``, ``fragment`` (those that left, in their order, then those cut off but still near when one
+        contact is left), ``snapshot`` and ``monomer``; the attributes tell the settings, law and material, ``steps``,
+        ``timestep`` [s], ``end_reason``, ``cut_bound`` [rad/s] and the state after relaxation (``initial_...``).
 
     Raises
     ------
@@ -126,6 +126,7 @@ def spin_up(
         If an argument is not usable.
     RuntimeError
         If the integration fails, or leaves the balance of energy; its attribute ``run`` holds the Dataset up to there.
+        Without it if the grain does not come to rest before.
     """
     _check(grain, max_steps)
     records, snapshot_every = whole_number(records, "records", 1), whole_number(snapshot_every, "snapshot_every", 0)

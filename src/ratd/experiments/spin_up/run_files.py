@@ -3,6 +3,7 @@
 Every reader names what is wrong with a damaged or foreign file, see `ratd.pipeline.io.read`.
 """
 
+from ratd.base.errors import InputError
 from ratd.experiments.made_with import constants_of
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
@@ -75,7 +76,10 @@ def read_marks(path):
 
 def run_of_seed(paths, seed):
     """The spin-up run of one seed, among those of some files."""
-    return next(run for path in paths for run in read_runs(path) if run.attrs["seed"] == seed)
+    found = [run for path in paths for run in read_runs(path) if run.attrs["seed"] == seed]
+    if not found:
+        raise InputError(f"{', '.join(map(str, paths))}: no run has the seed {seed}")
+    return found[0]
 
 
 def read_table(path):

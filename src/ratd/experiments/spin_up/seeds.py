@@ -201,4 +201,5 @@ class Cells:
             values = sorted(values | {block for cell in self.cells for block in self._split(self.seeds, cell)})
         else:
             values = getattr(self, name) if name in ("sizes", "calibration_labels") else self.config[name]
-        return "|".join(re.escape(value) for value in values)
+        # of nothing the empty pattern would be any name at all
+        return "|".join(re.escape(value) for value in values) or "(?!)"

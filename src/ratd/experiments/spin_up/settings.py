@@ -136,9 +136,9 @@ class Settings(Cells):
         }
 
     def pairs(self, material):
-        """Settings of the pairs of figure 10, for one material."""
+        """Settings of the pairs of figure 10, for one material; None where that is left out."""
         own = self.config["figures"]["figure10"]
-        return {
+        return own and {
             "material": self.material(material),
             "smallest": self.radii["smallest"],
             "largest": self.radii["largest"],

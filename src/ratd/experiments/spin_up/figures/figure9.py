@@ -91,14 +91,14 @@ def _against_value(axes, table, parameter, style):
     values = np.sort(table[PARAMETERS[parameter]].unique()) / unit
     own = table.loc[table["parameter"] == OWN, PARAMETERS[parameter]].iloc[0] / unit
     logarithm = parameter == "xi_c"  # its values double
-    steps = np.array([-1.5, -0.5, 0.5, 1.5])[: len(MARKS) * len(style)]
-    place = iter(steps - steps.mean())
+    signs = len(MARKS) * len(style)
+    place = iter(np.arange(signs) - 0.5 * (signs - 1))
     ends = []
     for kind, look in style.items():
         for mark in MARKS:
             found = effect(table[table["type"] == kind], parameter, mark)
             found = found[~np.isclose(found["value"] / unit, own)]
-            x, shift = found["value"].to_numpy() / unit, next(place, 0.0)
+            x, shift = found["value"].to_numpy() / unit, next(place)
             x = x * 1.12**shift if logarithm else x + 0.3 * shift
             median, error = found["median"].to_numpy(), np.nan_to_num(found["error"].to_numpy())
             form = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5, "ms": 4.0, "mfc": MARK_FACE[mark]}

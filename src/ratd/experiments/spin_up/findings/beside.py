@@ -139,7 +139,9 @@ def of_printed_pace(driven, printed, acceleration, factor):
         and how many of them an hour has.
     """
     (material, kind, size), printed_omega = FIRST_LOSS
-    own = printed[(printed["material"] == material) & (printed["type"] == kind) & np.isclose(printed["a_eff"], size)]
+    own = printed[
+        (printed["material"] == material) & (printed["type"] == kind) & np.isclose(printed["a_eff"], size, atol=0.0)
+    ]
     keys = ["material", "type", "nm", "seed"]
     grains = own.merge(driven[[*keys, "omega_first_loss"]], on=keys, suffixes=("", "_driven"))
     step = grains["timestep"] * PRINTED_STEP / factor
@@ -150,7 +152,7 @@ def of_printed_pace(driven, printed, acceleration, factor):
 
     end, time = SPIN_UP
     tuned, hours = acceleration * PRINTED_STEP / factor, end / time
-    of_cell = (driven["material"] == material) & (driven["type"] == kind) & np.isclose(driven["a_eff"], size)
+    of_cell = (driven["material"] == material) & (driven["type"] == kind) & np.isclose(driven["a_eff"], size, atol=0.0)
     omega, known = parts(hours), float(driven.loc[of_cell, "omega_first_loss"].median())
     found = {"": omega, " driven": known}
     return {
@@ -232,7 +234,7 @@ def of_lammps(driven, default, starts):
     """
     values = {"lammps.near": NEAR_LAMMPS}
     quarter = default[default["mark"] == "25 % of the mass"].dropna(subset="ratio")
-    for kind, part in quarter[np.isclose(quarter["a_eff"], quarter["a_eff"].max())].groupby("type"):
+    for kind, part in quarter[np.isclose(quarter["a_eff"], quarter["a_eff"].max(), atol=0.0)].groupby("type"):
         values[f"lammps.largest {kind}"] = float(part["ratio"].median())
     for (limits, mark), part in starts.dropna(subset="median").groupby(["limits", "mark"]):
         values |= {

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from ratd.base.statistics import equal_weights, mean_of, rank_correlation, slope_error, slope_of
+from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.findings.ensemble import CLASSES, middle, of_class
@@ -91,7 +91,9 @@ def _where(letter, table):
         f"{letter}.large in abstract": float(of_class(table, "large")["omega_disr"].between(*ABSTRACT).mean()),
     }
     (material, kind, size), _ = FIRST_LOSS
-    shown = table[(table["material"] == material) & (table["type"] == kind) & np.isclose(table["a_eff"], size)]
+    shown = table[
+        (table["material"] == material) & (table["type"] == kind) & np.isclose(table["a_eff"], size, atol=0.0)
+    ]
     last = median(shown["omega_end"] / shown["omega_first_loss"])
     values |= {f"{letter}.to the last": last, f"{letter}.holds to the last": is_within(last, 5.0, 20.0)}
     slopes_above = []
@@ -243,8 +245,6 @@ def grown_claims(grown):
     values["g.radius range"] = middle(radius)
     values["g.holds radius"] = is_within(values["g.radius"], 18.0, 22.0)
     values |= beside_printed_grains(grown)
-    correlation = rank_correlation(grown["n_monomers"].to_numpy(), grown["a_eff"].to_numpy())
-    values["g.monomers with size"] = correlation
     return values
 
 
