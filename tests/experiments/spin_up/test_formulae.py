@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from ratd.aggregates.grain import Grain
+from ratd.aggregates.growth import grow
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.engine.leapfrog import leapfrog
@@ -70,6 +71,20 @@ def test_by_the_printed_sign_of_a_twist_two_monomers_turn_against_each_other_eve
     np.testing.assert_allclose(late, printed_twist(20e-9, material), rtol=1e-3)
     used = evolve(pair.position, pair.radius, spin=spin, material="q-S", law=jkr(), **options)
     assert abs(used["spin"]).max() < 1.01e4
+
+
+def test_by_the_printed_sign_of_a_twist_a_grain_of_single_contacts_comes_apart_by_itself():
+    """As the appendix of the reproduction says: BA within 50 ns; three contacts a monomer hold BAM2 together."""
+    law = contact_law({"formulae": "printed"}, NU)
+    plus = law._replace(twisting_stiffness=-law.twisting_stiffness)
+    pieces = {}
+    for kind in ("BA", "BAM2"):
+        grain = grow(kind, 100e-9, "q-S", 0)
+        spin = 1e3 * np.random.default_rng(0).normal(size=(grain.n_monomers, 3))
+        options = {"contacts": grain.contacts, "duration": 50e-9, "balance": None, "material": "q-S"}
+        run = evolve(grain.position, grain.radius, spin=spin, law=plus, **options)
+        pieces[kind] = len(np.unique(run["piece"]))
+    assert pieces["BA"] > 5 and pieces["BAM2"] == 1
 
 
 def test_the_law_of_the_paper_has_all_formulae_as_printed_and_no_damping():

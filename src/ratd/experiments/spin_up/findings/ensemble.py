@@ -78,7 +78,6 @@ def of_drive(letter, table):
             # one that never loses a quarter holds to more than its first loss
             least = here[MARK].fillna(here["omega_first_loss"])
             values[f"{letter}.{kind} {size} at least"] = geometric_mean(least / here["printed"], cell_of(here))
-            values[f"{letter}.{kind} {size} load"] = 1.0 / values[f"{letter}.{kind} {size}"].value ** 2
     for mark, word in MARKS.items():
         for row in slopes(table, mark).to_dict("records"):
             for side in ("below", "above", "change"):
