@@ -79,6 +79,8 @@ MARK_RULES = "validation/data/mark_rules.nc"
 OTHERS = ("q-S", "co-S")
 STUDY = "config/figure9_{}.yaml"
 """Materials beside that of figure 9 for which its constants were varied as well, and their config."""
+BOTH_DRIVES = "config/studies/spun_up.yaml"
+"""Config of the ensemble with both drives; its results are in the folder spun_up."""
 RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
@@ -158,6 +160,10 @@ def collect(results, data=DATA):
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
     path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
     _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
+    _copy(results / "calibration/fit.nc", data / "calibration.nc", "calibration")
+    (own,) = load(*CONFIGS, BOTH_DRIVES).figure4_files(path, PRINTED)
+    own = results.parent / "spun_up" / Path(own).relative_to(results)
+    _copy(own, data / f"figure4/{PRINTED}.nc", "spinup", f" --configfile {BOTH_DRIVES}")
     (source,) = plan.figure5_files(path, DRIVEN)
     file = _read(source, "spinup")
     wanted = plan.config["figures"]["figure5"]["seed"]
