@@ -13,6 +13,8 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 
 __all__ = ["grain_row", "grains", "read_grains"]
 
+CUT_BOUND = ("rad s-1", "angular velocity up to which the pulls of its contacts hold the grain as it stands")
+"""Units and meaning of `ratd.cut_bound` in files."""
 _SHAPE = {
     "moment_1": ("kg m2", "greatest principal moment of inertia I_1 about the centre of mass"),
     "moment_2": ("kg m2", "middle principal moment of inertia I_2"),
@@ -46,7 +48,7 @@ register(
             **over((ROW,), {"enclosing_radius": ("m", "radius of the smallest sphere around all monomers")}),
             **over((ROW,), _SHAPE),
             **over((ROW,), _SHAPE_NAN | _FRACTAL, nan=True),
-            **over((ROW,), {"cut_bound": ("rad s-1", "angular velocity above which no cut of the grain can hold")}),
+            **over((ROW,), {"cut_bound": CUT_BOUND}),
             **over(
                 ("monomer",),
                 {
@@ -71,7 +73,7 @@ def grain_row(grain, cut_bound):
     ----------
     grain : Grain
     cut_bound : float
-        Angular velocity above which no cut of the grain can hold [rad s-1].
+        Angular velocity up to which the pulls of its contacts hold the grain as it stands [rad s-1].
 
     Returns
     -------

@@ -4,6 +4,7 @@ Only the pipeline imports this module, to find a kind of file (see `ratd.pipelin
 stands in `ratd.experiments.spin_up.run_files`, which needs no compiled code.
 """
 
+from ratd.aggregates.files import CUT_BOUND
 from ratd.experiments.spin_up import fragmentation, grain_table, marks, records
 from ratd.experiments.spin_up.printed import PAPER
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
@@ -25,7 +26,7 @@ RUN_VALUES = {
     "smaller_steps": Variable((ROW,), "i8", "1", "parts of the run that were made again with smaller steps"),
     "end_reason": Variable((ROW,), "i1", "", "why the run ended", flags=END_REASONS),
     "angular_acceleration": Variable((ROW,), "f8", "rad s-2", "angular acceleration at the start"),
-    "cut_bound": Variable((ROW,), "f8", "rad s-1", "angular velocity above which no cut of the grain can hold"),
+    "cut_bound": Variable((ROW,), "f8", *CUT_BOUND),
     "initial_n_monomers": Variable((ROW,), "i8", "1", "number of monomers after relaxation at rest"),
     "initial_n_contacts": Variable((ROW,), "i8", "1", "number of contacts after relaxation at rest"),
     "initial_mass": Variable((ROW,), "f8", "kg", "mass after relaxation at rest"),

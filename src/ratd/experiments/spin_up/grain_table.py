@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ratd.aggregates.files import CUT_BOUND
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.experiments.spin_up.cells import as_frame, size_key, sort_cells
@@ -45,7 +46,7 @@ GRAIN_COLUMNS = {
     "axis_a": ("m", "shortest semi-axis as grown (Eq. 4)"),
     "axis_b": ("m", "middle semi-axis as grown (Eq. 5)"),
     "axis_c": ("m", "longest semi-axis as grown (Eq. 6)"),
-    "cut_bound": ("rad s-1", "angular velocity at which the weakest cut through the contacts gives way"),
+    "cut_bound": CUT_BOUND,
     "spin_share": ("1", "share of the monomers' own moments of inertia in I_1"),
 }
 """Units and meaning of what is known before the spin-up."""
