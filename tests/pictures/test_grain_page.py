@@ -121,7 +121,7 @@ def test_script_and_page_fit_together(page):
     assert set(re.findall(r'element\("([\w-]+)"\)', SCRIPT.read_text())) <= ids
     assert page.count('<div id="canvasTarget"></div>') == page.count('<div id="numbers"') == 1
     assert SCRIPT.read_text() in page and "<title>q-S BAM2 350 nm, seed 0</title>" in page
-    assert "driven" in page and "printed terms of the frame" in grain_page(run_with_snapshots(), OMEGA_DISR, "literal")
+    assert "driven" in page and "printed terms" in grain_page(run_with_snapshots(), OMEGA_DISR, "literal")
 
 
 def test_a_run_without_what_the_page_needs():

@@ -37,7 +37,7 @@ def keep(sentence, place=PLACE):
 def tell_again(place=PLACE):
     """Print the sentence, if there is one."""
     if sentence := kept(place):
-        print(f"first error: {sentence}", file=sys.stderr)
+        print(sentence, file=sys.stderr)
 
 
 def kept(place=PLACE):

@@ -72,7 +72,7 @@ def test_overview_has_a_bound_a_type_and_a_panel_for_the_other_drive(table):
     figure = overview(table, literal, bounds(table), table)
     left, right = figure.axes
     assert left.get_ylim() == right.get_ylim() and figure.get_figwidth() == TWO_COLUMNS
-    assert "driven" in left.get_title() and "printed terms of the frame" in right.get_title()
+    assert "driven" in left.get_title() and "printed terms" in right.get_title()
     for kind, factor in FACTOR.items():
         np.testing.assert_allclose(markers(right, kind)[0].get_ydata().astype(float), 10 * factor)
         for axes in (left, right):
