@@ -197,14 +197,14 @@ def recomputed(older, newer):
     """Grains of two tables, the newer over the older: how many, median with its error, least and most.
 
     ``check.n`` counts all, ``check.ratios`` those that lose a quarter in both, ``check.larger`` those above
-    ``check.largest`` [nm], the greatest size of which there are most.
+    ``check.largest`` [nm], the greatest size of which there are all.
     """
     keys = ["material", "type", "size", "seed"]
     older, newer = (table.assign(size=size_key(table["a_eff"])) for table in (older, newer))
     pairs = newer.merge(older, on=keys, suffixes=("", "_older"))
     ratio = pairs[MARK] / pairs[f"{MARK}_older"]
     n_older, n = (table["a_eff"].div(NM).round().value_counts() for table in (older, pairs))
-    largest = float(n.index[n > 0.5 * n_older[n.index]].max())
+    largest = float(n.index[n == n_older[n.index]].max())
     return {
         "check.n": len(pairs),
         "check.ratios": int(ratio.count()),
