@@ -3,8 +3,7 @@
 The printed formulae stand here and nowhere else: nothing computes with them that does not say so.
 """
 
-import math
-
+from ratd.base.materials import sphere_mass
 from ratd.laws.contact_constants import equilibrium_contact_radius
 from ratd.laws.jkr_with_springs import jkr
 from ratd.laws.tangential import TWISTING_LIMIT, twisting_stiffness
@@ -91,5 +90,5 @@ def printed_twist(radius, material):
     """
     r0 = equilibrium_contact_radius(0.5 * radius, material.surface_energy, material.reduced_modulus)
     stiffness = twisting_stiffness(r0, material.shear_modulus / (2.0 - 2.0 * material.poisson_number**2))
-    inertia = 0.4 * material.density * 4.0 / 3.0 * math.pi * radius**5
+    inertia = 0.4 * sphere_mass(radius, material.density) * radius**2
     return 2.0 * stiffness * TWISTING_LIMIT / inertia

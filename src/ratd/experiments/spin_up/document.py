@@ -41,7 +41,7 @@ from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import fragment_table, spun_up_fragments
-from ratd.experiments.spin_up.grain_table import read_spun_up, spun_up_files, spun_up_table
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import MARK, disruption
 from ratd.experiments.spin_up.plan import load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
@@ -193,14 +193,14 @@ def read_data(data=DATA):
     tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
     grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
     files = spun_up_files(data / "spun_up" / DRIVEN)
-    anew = data / "spun_up" / PRINTED
+    anew = spun_up_files(data / "spun_up" / PRINTED)
     rules = data.parents[1] / MARK_RULES
     return Data(
         grown=ensemble.beside_print(grown),
         driven=ensemble.beside_print(spun_up_table(files, grown)),
         printed=ensemble.beside_print(printed),
-        recomputed=read_spun_up(anew) if any(anew.glob("*.nc")) else None,
-        files={DRIVEN: files, PRINTED: spun_up_files(anew)},
+        recomputed=spun_up_table(anew) if anew else None,
+        files={DRIVEN: files, PRINTED: anew},
         fragments={
             DRIVEN: spun_up_fragments(files),
             PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
