@@ -1,6 +1,5 @@
 # What all other files of rules need, the config read with a word on where it is wrong, and functions for their params.
 import atexit
-import re
 import sys
 from functools import partial
 from pathlib import Path

@@ -1,9 +1,10 @@
 # Static compression: clusters, runs, tables of runs that differ in their seeds alone, pulls, figures.
 from ratd.experiments.compression import plan as compression
+from ratd.pipeline.places import any_of
 
 COMPRESSION_NAMES = {
-    "set": "|".join(map(re.escape, COMPRESSION.config["sets"])) or "(?!)",
-    "pull": "|".join(map(re.escape, COMPRESSION.config["pulls"])) or "(?!)",
+    "set": any_of(COMPRESSION.config["sets"]),
+    "pull": any_of(COMPRESSION.config["pulls"]),
     "seed": r"\d+",
     "phi": r"[\d.]+",
 }

@@ -11,12 +11,17 @@ import numpy as np
 
 from ratd.base.units import NM
 
-__all__ = ["contradiction", "seeds_of", "size_label"]
+__all__ = ["any_of", "contradiction", "seeds_of", "size_label"]
 
 
 def size_label(size):
     """A size in nm as it stands in the name of a folder, e.g. ``"50"`` or ``"62.5"``."""
     return f"{size:.10g}"
+
+
+def any_of(names):
+    """Regular expression of any of some names; of none, one that nothing matches, since the empty one is any name."""
+    return "|".join(map(re.escape, names)) or "(?!)"
 
 
 def seeds_of(block):

@@ -6,7 +6,7 @@ import pytest
 from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.experiments.spin_up import study
-from ratd.experiments.spin_up.grain_table import read_spun_up
+from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.plan import Plan, load
 from ratd.pipeline import blocks, io, queue
 from tiny_pipeline import ROOT
@@ -72,7 +72,7 @@ def test_rows_hold_marks_and_fragments(done):
 
 
 def test_the_table_of_an_ensemble_is_read_from_the_rows(done):
-    table = read_spun_up(done / "prescribed")
+    table = spun_up_table(spun_up_files(done / "prescribed"))
     assert table["type"].tolist() == ["BA", "BA", "BAM2", "BAM2"] and table["seed"].tolist() == [0, 1, 0, 1]
     (first, *_) = rows(done / "prescribed" / "q-S_BA.nc")
     assert table["omega_mass_75"][0] == first["omega_mass_75"].item() and table["steps"][0] == first.attrs["steps"]

@@ -3,10 +3,10 @@
 A *cell* is a law, a cluster, one of its samples, a velocity and an impact parameter; its rotations are one file.
 """
 
-import re
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 
+from ratd.pipeline.places import any_of
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pipeline import config as configs
@@ -205,7 +205,7 @@ class Plan:
             values = {self.material_of(cell.law).name for cell in self.cells}
         else:
             values = {cell.names[name] for cell in self.cells}
-        return "|".join(re.escape(value) for value in sorted(values)) or "(?!)"
+        return any_of(sorted(values))
 
     def run_files(self, path=RUNS, *, laws=None, clusters=None):
         """Files of all cells, or of those of some laws and clusters, list of str."""

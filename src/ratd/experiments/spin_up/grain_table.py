@@ -21,7 +21,6 @@ __all__ = [
     "KEYS",
     "RUN_COLUMNS",
     "grain_table",
-    "read_spun_up",
     "spun_up_files",
     "spun_up_table",
     "table_dataset",
@@ -167,11 +166,6 @@ def spun_up_table(files, grown=None):
         return grain_table(marks=marks)
     table = grain_table(grown[list(GRAIN_COLUMNS)], grain_table(marks=marks))
     return table[table["drive"] != ""].reset_index(drop=True)
-
-
-def read_spun_up(folder):
-    """Table of the grains that the queue of spin-ups has finished, as `spun_up_table` makes it of `spun_up_files`."""
-    return spun_up_table(spun_up_files(folder))
 
 
 def _spun_up(file):

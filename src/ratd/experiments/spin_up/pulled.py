@@ -142,7 +142,7 @@ def beside_spin(table, spun):
     table : pandas.DataFrame
         Of `read_pulled`, or a part of it.
     spun : pandas.DataFrame
-        Of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+        Of `ratd.experiments.spin_up.grain_table.spun_up_table`.
 
     Returns
     -------

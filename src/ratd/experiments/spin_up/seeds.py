@@ -3,9 +3,7 @@
 A cell is one (material, type, size). Its seeds are grown and spun up in blocks, one file and one job each.
 """
 
-import re
-
-from ratd.pipeline.places import size_label
+from ratd.pipeline.places import any_of, size_label
 
 __all__ = ["Cells", "cell_of", "size_label"]
 
@@ -201,5 +199,4 @@ class Cells:
             values = sorted(values | {block for cell in self.cells for block in self._split(self.seeds, cell)})
         else:
             values = getattr(self, name) if name in ("sizes", "calibration_labels") else self.config[name]
-        # of nothing the empty pattern would be any name at all
-        return "|".join(re.escape(value) for value in values) or "(?!)"
+        return any_of(values)

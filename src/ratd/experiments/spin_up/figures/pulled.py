@@ -23,7 +23,7 @@ def pulled(table, spun):
     table : pandas.DataFrame
         Of `ratd.experiments.spin_up.pulled.read_pulled`.
     spun : pandas.DataFrame
-        Of `ratd.experiments.spin_up.grain_table.read_spun_up`.
+        Of `ratd.experiments.spin_up.grain_table.spun_up_table`.
 
     Returns
     -------
