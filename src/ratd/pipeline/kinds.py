@@ -27,9 +27,7 @@ ROW = "row"
 
 HOMES = {
     "grains": "ratd.aggregates.files",
-    **dict.fromkeys(
-        ("spinup", "disruption", "table", "cells", "fit", "fragments", "spun_up"), "ratd.experiments.spin_up.files"
-    ),
+    **dict.fromkeys(("spinup", "disruption", "table", "cells", "fit", "spun_up"), "ratd.experiments.spin_up.files"),
     **dict.fromkeys(("clusters", "compression", "stretched"), "ratd.experiments.compression.files"),
     **dict.fromkeys(("compression_set", "compression_snapshots"), "ratd.experiments.compression.tables"),
     **dict.fromkeys(("pressed", "tension_set"), "ratd.experiments.compression.pull"),

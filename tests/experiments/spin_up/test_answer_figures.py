@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.eq33 import eq33_omega
-from ratd.experiments.spin_up.figures.fragments import cumulative, fragments, shares
+from ratd.experiments.spin_up.figures.fragments import GREATEST, cumulative, fragments
 from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import over_the_paper, overview
 from ratd.experiments.spin_up.figures.style import TYPE_COLOUR, TYPE_MARKER, open_markers
 from ratd.experiments.spin_up.findings.law import of_curve
-from ratd.experiments.spin_up.fragmentation import fragment_shares, size_class
+from ratd.experiments.spin_up.fragmentation import mass_shares, size_class
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
 from ratd.experiments.spin_up.size_law import SPLIT, size_law_unit
 from ratd.pictures.style import ONE_COLUMN, TWO_COLUMNS
@@ -157,24 +157,14 @@ def test_fragments_are_counted_by_the_grain():
     assert found["mass_fraction"].tolist() == [0.01, 0.2, 0.3, 0.5]
     assert found["number"].tolist() == [2.0, 1.5, 1.0, 0.5]
     assert cumulative(table.assign(weight=[1.5, 1.5, 1.5, 0.5]))["number"].tolist() == [2.5, 1.75, 1.0, 0.25]
-    assert [share for share, _ in shares(table).values()] == pytest.approx([0.01 / 1.01, 0.7 / 1.01, 0.3 / 1.01])
-
-
-def test_shares_have_the_error_of_a_bootstrap_over_grains():
-    table = make_fragments()
-    table = table[(table["type"] == "BAM2") & (size_class(table["a_eff"]) == "50 to 150 nm")]
-    other = fragment_shares(table, "half").set_index("class")
-    found = shares(table[table["half"]])
-    for name, same in (("single monomers", "1 monomer"), ("more than 10", "more than 10")):
-        assert found[name].value == pytest.approx(other.loc[same, "mass_share"])
-        assert found[name].error == pytest.approx(other.loc[same, "mass_share_error"], rel=0.25)
-    assert all(np.isnan(error) for _, error in shares(table[table["grain"] == table["grain"].iloc[0]]).values())
+    found = [share.value for share in mass_shares(table, GREATEST).values()]
+    assert found == pytest.approx([0.01 / 1.01, 0.7 / 1.01, 0.3 / 1.01])
 
 
 def test_fragments_tell_the_greatest_error_of_their_bars():
     table = make_fragments()
     part = table[table["half"] & (size_class(table["a_eff"]) == "50 to 150 nm")]
-    most = max(error for kind in FACTOR for _, error in shares(part[part["type"] == kind]).values())
+    most = max(error for kind in FACTOR for _, error in mass_shares(part[part["type"] == kind], GREATEST).values())
     assert f"standard errors up to {100 * most:.2g}" in fragments(table, "prescribed").axes[3].get_xlabel()
 
 

@@ -20,7 +20,6 @@ from ratd.experiments.spin_up.findings.beside import (
     of_pairs,
     of_printed_pace,
     of_ways,
-    recomputed,
 )
 from ratd.experiments.spin_up.findings.claims import all_of, claims, grown_claims, is_above, is_below, is_within
 from ratd.experiments.spin_up.findings.ensemble import MARK, of_drive, strength_omega, what_contacts_hold
@@ -153,19 +152,6 @@ def test_the_printed_pace_is_beside_the_tuned_one():
     assert found["pace.short"] == pytest.approx(3e8 / found["pace.omega hours"])
     assert (found["pace.holds"], found["pace.holds driven"]) == ("no", "no")
     assert of_printed_pace(table.assign(omega_first_loss=3e8), table, 1e14, 0.02)["pace.holds driven"] == "yes"
-
-
-def test_grains_that_were_computed_anew_are_compared_with_themselves():
-    older = grains(lambda kind, nm: 1e8)
-    newer = grains(lambda kind, nm: 1.01e8, sizes=(300,))
-    values = recomputed(older, newer)
-    assert values["check.n"] == 9 and values["check.ratio"].value == pytest.approx(1.01)
-    assert values["check.range"] == "1.010 to 1.010"
-    assert (values["check.largest"], values["check.larger"], values["check.ratios"]) == (300.0, 0, 9)
-    # of a few larger ones it is said that they are few, and those that never lose a quarter are counted
-    few = pd.concat([newer, grains(lambda kind, nm: 1e8, sizes=(400,)).iloc[:2].assign(omega_mass_75=np.nan)])
-    values = recomputed(pd.concat([older, grains(lambda kind, nm: 1e8, sizes=(400,))]), few)
-    assert [values[f"check.{name}"] for name in ("n", "ratios", "largest", "larger")] == [11, 9, 300.0, 2]
 
 
 def test_the_tables_of_the_materials_show_used_and_printed():

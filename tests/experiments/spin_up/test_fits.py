@@ -15,7 +15,7 @@ from ratd.experiments.spin_up.eq33 import (
     fitted_numbers,
     radius_of_reading,
 )
-from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, fragment_shares, power_law
+from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, mass_shares, power_law
 from ratd.experiments.spin_up.oblateness import is_oblate, oblate_change, oblate_counts, oblate_share
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, slopes
 from synthetic_runs import make_fragments, make_table
@@ -304,38 +304,47 @@ def test_what_the_share_of_oblate_grains_gains_is_counted_grain_by_grain():
 def test_shares_of_fragments():
     fragments = pd.DataFrame(
         {
-            "type": "BAM2",
             "grain": [0, 0, 0, 1, 1],
             "fragment_n_monomers": [1, 3, 20, 1, 4],
             "mass_fraction": [0.1, 0.1, 0.3, 0.25, 0.25],
             "weight": 1.0,
-            "half": [True, True, True, True, True],
-            "disruption": [True, False, False, False, False],
         }
     )
-    own = fragment_shares(fragments, "half").set_index("class")
-    assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.35, 0.1, 0.25, 0.3])
-    assert own["number_share"].tolist() == pytest.approx([0.4, 0.2, 0.2, 0.2])
-    assert (own["n_fragments"].iloc[0], own["n_grains"].iloc[0]) == (5, 2)
-    one = fragment_shares(fragments, "disruption")
-    assert one["mass_share"].tolist() == [1, 0, 0, 0] and one["mass_share_error"].isna().all()
-    own = fragment_shares(fragments.assign(weight=[0.5, 0.5, 0.5, 1.5, 1.5]), "half").set_index("class")
-    assert own.loc[list(MONOMER_CLASSES), "mass_share"].tolist() == pytest.approx([0.425, 0.05, 0.375, 0.15])
-    assert own["number_share"].tolist() == pytest.approx([2 / 4.5, 0.5 / 4.5, 1.5 / 4.5, 0.5 / 4.5])
+    found = mass_shares(fragments)
+    assert list(found) == list(MONOMER_CLASSES)
+    assert [share.value for share in found.values()] == pytest.approx([0.35, 0.1, 0.25, 0.3])
+    one = mass_shares(fragments[:3])
+    assert one["more than 10"].value == pytest.approx(0.6) and all(np.isnan(share.error) for share in one.values())
+    found = mass_shares(fragments.assign(weight=[0.5, 0.5, 0.5, 1.5, 1.5]))
+    assert [share.value for share in found.values()] == pytest.approx([0.425, 0.05, 0.375, 0.15])
+    found = mass_shares(fragments, {"up to 3": 3, "more": np.inf})
+    assert [share.value for share in found.values()] == pytest.approx([0.45, 0.55])
 
 
 def test_classes_of_monomers_begin_where_their_names_say():
-    fragments = pd.DataFrame({"fragment_n_monomers": [1, 2, 3, 4, 10, 11], "type": "BA", "grain": 0})
-    own = fragment_shares(fragments.assign(mass_fraction=0.1, weight=1.0, half=True), "half").set_index("class")
-    assert own.loc[list(MONOMER_CLASSES), "number_share"].tolist() == pytest.approx([1 / 6, 2 / 6, 2 / 6, 1 / 6])
+    fragments = pd.DataFrame({"fragment_n_monomers": [1, 2, 3, 4, 10, 11], "grain": 0})
+    found = mass_shares(fragments.assign(mass_fraction=0.1, weight=1.0))
+    assert [share.value for share in found.values()] == pytest.approx([1 / 6, 2 / 6, 2 / 6, 1 / 6])
 
 
 def test_error_of_a_share_of_lone_fragments_is_binomial():
     """Of 200 grains that lose one fragment each 60 lose a monomer."""
-    fragments = pd.DataFrame({"fragment_n_monomers": np.repeat([1, 3], [60, 140]), "type": "BA"})
-    fragments = fragments.assign(grain=np.arange(200), mass_fraction=0.1, weight=1.0, half=True)
-    own = fragment_shares(fragments, "half").set_index("class").loc[MONOMER_CLASSES[0]]
-    assert own["number_share_error"] == pytest.approx(np.sqrt(0.3 * 0.7 / 200), rel=0.1)
+    fragments = pd.DataFrame({"fragment_n_monomers": np.repeat([1, 3], [60, 140])})
+    found = mass_shares(fragments.assign(grain=np.arange(200), mass_fraction=0.1, weight=1.0))
+    assert found["1 monomer"].error == pytest.approx(np.sqrt(0.3 * 0.7 / 199))
+
+
+def test_error_of_a_share_is_that_of_a_bootstrap_over_grains():
+    fragments = make_fragments(grains=30)
+    fragments = fragments[(fragments["type"] == "BAM2") & (fragments["a_eff"] < 100e-9)]
+    fragments = fragments.assign(weight=1.0 + fragments["grain"] % 3)
+    rng, own = np.random.default_rng(1), [part for _, part in fragments.groupby("grain")]
+    drawn = []
+    for _ in range(300):
+        chosen = [own[k].assign(grain=number) for number, k in enumerate(rng.integers(len(own), size=len(own)))]
+        drawn.append([share.value for share in mass_shares(pd.concat(chosen)).values()])
+    errors = [share.error for share in mass_shares(fragments).values()]
+    np.testing.assert_allclose(errors, np.std(drawn, axis=0, ddof=1), rtol=0.2)
 
 
 @pytest.mark.parametrize("exponent", [1.5, 2.5])

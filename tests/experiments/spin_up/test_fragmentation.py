@@ -8,18 +8,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from ratd.base.errors import InputError
-from ratd.experiments.spin_up.fragmentation import (
-    COLUMNS,
-    SIZE_CLASSES,
-    fragment_table,
-    fragmentation,
-    join,
-    size_class,
-    spun_up_fragments,
-)
+from ratd.experiments.spin_up.fragmentation import SIZE_CLASSES, fragmentation, size_class, spun_up_fragments
 from ratd.experiments.spin_up.grain_table import spun_up_files
-from ratd.pipeline import io, kinds
 
 SPUN_UP = Path("docs/reproduction/data/spun_up/prescribed/q-S_BAM1.nc")
 
@@ -51,34 +41,42 @@ def test_fragments_stand_in_the_order_of_leaving():
     assert row["fragment_n_monomers"].values.tolist() == [2, 3]
 
 
+def file_of(rows, type="BA"):
+    """A file of the queue as far as fragments go: of each row a_eff [m], seed, omega_disr and its (mass, omega)."""
+    a_eff, seed, omega_disr, fragments = zip(*rows, strict=True)
+    mass, omega = np.array([one for own in fragments for one in own], dtype=float).reshape(-1, 2).T
+    return xr.Dataset(
+        {
+            "a_eff": ("row", list(a_eff)),
+            "seed": ("row", list(seed)),
+            "omega_disr": ("row", list(omega_disr)),
+            "initial_mass": ("row", [10.0] * len(rows)),
+            "initial_n_monomers": ("row", [20] * len(rows)),
+            "row_size_fragment": ("row", [len(own) for own in fragments]),
+            "fragment_mass": ("fragment", mass),
+            "fragment_n_monomers": ("fragment", np.arange(1, len(mass) + 1)),
+            "fragment_omega": ("fragment", omega),
+        },
+        attrs={"material": "q-S", "type": type},
+    )
+
+
 def test_the_table_tells_the_stages_of_each_grain_apart():
     rows = [
-        fragmentation(*run_and_mark([1, 3, 2, 1], [5, 6, 7, 8], 5.5, seed=4)),
-        fragmentation(*run_and_mark([], [], 5.5, seed=5)),
-        fragmentation(*run_and_mark([6, 2], [5, 6], 6.0, seed=6)),
+        (1e-7, 4, 5.5, [(1, 5), (3, 6), (2, 7)]),
+        (1e-7, 5, 5.5, []),
+        (1e-7, 6, 6.0, [(6, 5), (2, 6)]),
     ]
-    table = fragment_table(join(rows))
+    table = spun_up_fragments([file_of(rows)])
     assert table["seed"].tolist() == [4, 4, 4, 6, 6] and table["grain"].tolist() == [0, 0, 0, 2, 2]
     assert table["mass_fraction"].tolist() == pytest.approx([0.1, 0.3, 0.2, 0.6, 0.2])
     assert table["disruption"].tolist() == [True, False, False, True, True]
     assert table["half"].tolist() == [True, True, True, True, False]
-    assert (table["weight"] == 1).all()
-    other = fragmentation(*run_and_mark([1], [5], 5.5, seed=7)).assign(a_eff=5e-8)
-    assert fragment_table(join([*rows, other]))["weight"].tolist() == pytest.approx([2 / 3] * 5 + [2])
-    with pytest.raises(InputError, match="at least one grain"):
-        join([])
-
-
-def test_a_file_gives_back_what_was_written(tmp_path):
-    rows = [
-        fragmentation(*run_and_mark([1, 3], [5, 6], omega_disr, seed)) for seed, omega_disr in ((1, 5.5), (2, np.nan))
-    ]
-    dataset = join(rows).assign_attrs(drive="literal")
-    io.write(tmp_path / "fragments.nc", dataset, "fragments")
-    found = io.read(tmp_path / "fragments.nc", "fragments")
-    assert set(COLUMNS) < set(kinds.kind_of("fragments").variables)
-    for name in dataset.variables:
-        np.testing.assert_array_equal(found[name].values, dataset[name].values)
+    assert (table["weight"] == 1).all() and (table["n_monomers"] == 20).all()
+    # a cell of one grain counts as much as one of three, and grains of another file go on with the numbers
+    table = spun_up_fragments([file_of([*rows, (5e-8, 7, 5.5, [(1, 5)])]), file_of([(1e-7, 4, 5.5, [(1, 5)])], "BAM1")])
+    assert table["weight"].tolist() == pytest.approx([5 / 9] * 5 + [5 / 3] * 2)
+    assert table["grain"].tolist() == [0, 0, 0, 2, 2, 3, 4] and table["type"].tolist() == ["BA"] * 6 + ["BAM1"]
 
 
 def test_fragments_of_the_queue_are_read(tmp_path):

@@ -40,7 +40,7 @@ from ratd.experiments.spin_up.figures.law import law
 from ratd.experiments.spin_up.figures.overview import overview
 from ratd.experiments.spin_up.figures.pulled import pulled
 from ratd.experiments.spin_up.figures.radiation import radiation
-from ratd.experiments.spin_up.fragmentation import fragment_table, spun_up_fragments
+from ratd.experiments.spin_up.fragmentation import spun_up_fragments
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import MARK, disruption
 from ratd.experiments.spin_up.plan import load
@@ -93,10 +93,8 @@ class Data(NamedTuple):
     ----------
     grown, driven, printed : pandas.DataFrame
         All grains as grown, and those that were spun up, with Eq. 33 as printed.
-    recomputed : pandas.DataFrame or None
-        Grains of `printed` that the queue has computed anew.
     files : dict of str to list of xarray.Dataset
-        Drive -> what the queue has made.
+        Drive -> what the queue of spin-ups has made.
     fragments : dict of str to pandas.DataFrame
         Drive -> fragments.
     firm : pandas.DataFrame
@@ -125,7 +123,6 @@ class Data(NamedTuple):
     grown: pd.DataFrame
     driven: pd.DataFrame
     printed: pd.DataFrame
-    recomputed: pd.DataFrame | None
     files: dict
     fragments: dict
     firm: pd.DataFrame
@@ -191,20 +188,16 @@ def read_data(data=DATA):
     """The data beside the document."""
     data = Path(data)
     tables = {name: io.read(data / f"{name}.nc", name).to_dataframe() for name in TABLES}
-    grown, printed = read_table(data / "grown.nc"), read_table(data / "literal.nc")
-    files = spun_up_files(data / "spun_up" / DRIVEN)
-    anew = spun_up_files(data / "spun_up" / PRINTED)
+    grown = read_table(data / "grown.nc")
+    files = {drive: spun_up_files(data / "spun_up" / drive) for drive in (DRIVEN, PRINTED)}
+    driven, printed = (spun_up_table(files[drive], grown) for drive in (DRIVEN, PRINTED))
     rules = data.parents[1] / MARK_RULES
     return Data(
         grown=ensemble.beside_print(grown),
-        driven=ensemble.beside_print(spun_up_table(files, grown)),
+        driven=ensemble.beside_print(driven),
         printed=ensemble.beside_print(printed),
-        recomputed=spun_up_table(anew) if anew else None,
-        files={DRIVEN: files, PRINTED: anew},
-        fragments={
-            DRIVEN: spun_up_fragments(files),
-            PRINTED: fragment_table(io.read(data / "literal_fragments.nc", "fragments")),
-        },
+        files=files,
+        fragments={drive: spun_up_fragments(files[drive]) for drive in files},
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
         runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
@@ -212,7 +205,7 @@ def read_data(data=DATA):
         others={name: io.read(data / f"parameters_{name}.nc", "parameters").to_dataframe() for name in OTHERS},
         pulled=read_pulled(data / "pulled"),
         shapes=read_shapes(data / "shapes"),
-        studies=studies(data, files, printed),
+        studies=studies(data, files[DRIVEN], printed),
         lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
         mark_rules=io.read(rules, "validation_mark_rules").to_dataframe() if rules.is_file() else None,
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
@@ -262,8 +255,6 @@ def findings(data, fits):
     values |= beside.of_heat(values["radiation.q-S BA 100 ours"].value * NM)
     if data.mark_rules is not None:
         values |= of_mark_rules(data.mark_rules)
-    if data.recomputed is not None:
-        values |= beside.recomputed(data.printed, data.recomputed)
     values["cells.quarter"] = ensemble.cell_medians(data.driven)
     values["cells.disr"] = ensemble.cell_medians(data.driven, "omega_disr")
     values["cells.printed"] = ensemble.cell_medians(data.printed, "omega_disr")

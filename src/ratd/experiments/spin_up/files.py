@@ -133,28 +133,16 @@ _FIT = {
 }
 
 
-_FRAGMENTS_RAGGED = ("fragment",)
-_OF_FRAGMENTS = {
-    **row_sizes(_FRAGMENTS_RAGGED),
-    **{
-        name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
-        for name, (units, meaning) in fragmentation.FRAGMENT_COLUMNS.items()
-    },
-}
-_FRAGMENTS = {
-    **{
-        name: Variable(
-            (ROW,), "i8" if name == "seed" else "f8" if units else "str", units, meaning, nan=name.endswith("_disr")
-        )
-        for name, (units, meaning) in fragmentation.COLUMNS.items()
-    },
-    **_OF_FRAGMENTS,
-}
+_SPUN_UP_RAGGED = ("fragment",)
 _SPUN_UP = {
     **_DISRUPTION,
     **over((ROW,), marks.BEFORE_MARKS, nan=True),
     "source": Variable((ROW,), "str", "", "hash of the source that made the row"),
-    **_OF_FRAGMENTS,
+    **row_sizes(_SPUN_UP_RAGGED),
+    **{
+        name: Variable(("fragment",), "i4" if name == "fragment_n_monomers" else "f8", units, meaning)
+        for name, (units, meaning) in fragmentation.FRAGMENT_COLUMNS.items()
+    },
 }
 
 
@@ -191,5 +179,4 @@ _register(
     attributes=("drive",),
     places=("ensemble/{drive}/table3.nc",),
 )
-_register("fragments", "Fragments that leave grains", _FRAGMENTS, attributes=("drive",), ragged=_FRAGMENTS_RAGGED)
-_register("spun_up", "Grains that were spun up: marks, fragments", _SPUN_UP, ragged=_FRAGMENTS_RAGGED, **_RUN)
+_register("spun_up", "Grains that were spun up: marks, fragments", _SPUN_UP, ragged=_SPUN_UP_RAGGED, **_RUN)

@@ -13,21 +13,12 @@ import pandas as pd
 import xarray as xr
 
 from ratd.base.errors import InputError
+from ratd.base.measured import Measured
 from ratd.base.statistics import drawn_counts, equal_weights, mean_of
-from ratd.experiments.spin_up.cells import N_BOOTSTRAP, cell_of
+from ratd.experiments.spin_up.cells import cell_of
 
 HALF = 0.5
 """Part of the mass that leaves in the second piece of the list."""
-COLUMNS = {
-    "material": ("", "material of the monomers"),
-    "type": ("", "growth: BA, BAM1 or BAM2"),
-    "a_eff": ("m", "effective radius of the grain"),
-    "seed": ("1", "seed of the grain"),
-    "grain_mass": ("kg", "mass of the grain"),
-    "omega_disr": ("rad s-1", "angular velocity of disruption"),
-    "mass_fraction_disr": ("1", "mass of the largest fragment at omega_disr over that of the grain"),
-}
-"""Units and meaning of what is known of each grain."""
 FRAGMENT_COLUMNS = {
     "fragment_mass": ("kg", "mass of a fragment that left"),
     "fragment_n_monomers": ("1", "number of monomers of a fragment that left"),
@@ -63,7 +54,7 @@ def fragmentation(run, mark):
     Returns
     -------
     xarray.Dataset
-        Scalars of `COLUMNS` and, over `fragment`, the variables of `FRAGMENT_COLUMNS`, in the order of leaving.
+        The variables of `FRAGMENT_COLUMNS` over `fragment`, in the order of leaving.
     """
     order = np.argsort(run["fragment_omega"].values, kind="stable")
     omega = run["fragment_omega"].values[order]
@@ -76,78 +67,11 @@ def fragmentation(run, mark):
         omega_disr = float(mark["omega_disr"])
         if np.isfinite(omega_disr):
             kept = max(kept, int(np.sum(omega <= omega_disr)))
-    row = xr.Dataset(
-        {
-            **{name: run.attrs[name] for name in ("material", "type", "a_eff", "seed")},
-            "grain_mass": grain_mass,
-            "omega_disr": float(mark["omega_disr"]),
-            "mass_fraction_disr": float(mark["mass_fraction_disr"]),
-        }
-    )
-    for name in FRAGMENT_COLUMNS:
-        row[name] = ("fragment", run[name].values[order][:kept])
-    return row
-
-
-def join(rows):
-    """Fragmentation of many grains as one dataset, the fragments one grain after the other.
-
-    Parameters
-    ----------
-    rows : list of xarray.Dataset
-        What `fragmentation` returned for them.
-
-    Returns
-    -------
-    xarray.Dataset
-        `COLUMNS` and row_size_fragment over `row`, `FRAGMENT_COLUMNS` over `fragment`: a file of kind "fragments".
-
-    Raises
-    ------
-    InputError
-        If there is no grain.
-    """
-    if not rows:
-        raise InputError("fragmentation: at least one grain is needed")
-    result = xr.Dataset({name: ("row", np.array([row[name].item() for row in rows])) for name in COLUMNS})
-    result["row_size_fragment"] = ("row", np.array([row.sizes["fragment"] for row in rows], dtype="i8"))
-    for name in FRAGMENT_COLUMNS:
-        result[name] = ("fragment", np.concatenate([row[name].values for row in rows]))
-    return result
-
-
-def fragment_table(dataset):
-    """One row a fragment, with its grain.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Of kind "fragments"; may have more over `row`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns over `row`, those of `COLUMNS` at least, and `FRAGMENT_COLUMNS`; `grain`, the number of the grain;
-        `mass_fraction`, the mass of the fragment over that of the grain; `disruption` and `half`, whether it belongs to
-        these `STAGES`; `weight` of the grain, with which all cells (material, type, size) count alike.
-    """
-    size = dataset["row_size_fragment"].values
-    of_grains = [name for name in dataset if dataset[name].dims == ("row",) and name != "row_size_fragment"]
-    grains = pd.DataFrame({name: dataset[name].values for name in of_grains})
-    grains["grain"] = np.arange(len(grains))
-    grains["weight"] = equal_weights(cell_of(grains))
-    table = grains.loc[grains.index.repeat(size)].reset_index(drop=True)
-    for name in FRAGMENT_COLUMNS:
-        table[name] = dataset[name].values
-    table["mass_fraction"] = table["fragment_mass"] / table["grain_mass"]
-    before = table.groupby("grain")["mass_fraction"].cumsum() - table["mass_fraction"]
-    table["half"] = before < HALF
-    table["disruption"] = table["fragment_omega"] <= table["omega_disr"]
-    return table
+    return xr.Dataset({name: ("fragment", run[name].values[order][:kept]) for name in FRAGMENT_COLUMNS})
 
 
 def spun_up_fragments(files):
-    """Fragments of the grains that the queue of spin-ups has finished.
+    """Fragments of the grains that the queue of spin-ups has finished, one row a fragment.
 
     Parameters
     ----------
@@ -157,27 +81,29 @@ def spun_up_fragments(files):
     Returns
     -------
     pandas.DataFrame
-        As `fragment_table` makes it, with n_monomers of the grain.
+        `FRAGMENT_COLUMNS`; material, type, a_eff, seed, n_monomers, grain_mass and omega_disr of the grain; `grain`,
+        its number; `mass_fraction`, the mass of the fragment over that of the grain; `disruption` and `half`, whether
+        it belongs to these `STAGES`; `weight` of the grain, with which all cells (material, type, size) count alike.
     """
-    grains = pd.concat(
-        [
-            pd.DataFrame(
-                {
-                    "material": file.attrs["material"],
-                    "type": file.attrs["type"],
-                    "grain_mass": file["initial_mass"].values,
-                    "n_monomers": file["initial_n_monomers"].values,
-                    **{name: file[name].values for name in ("a_eff", "seed", "omega_disr", "mass_fraction_disr")},
-                    "row_size_fragment": file["row_size_fragment"].values,
-                }
-            )
-            for file in files
-        ]
-    )
-    joined = xr.Dataset({name: ("row", grains[name].to_numpy()) for name in grains})
+    grains = pd.concat([_grains_of(file) for file in files], ignore_index=True)
+    grains["grain"] = np.arange(len(grains))
+    grains["weight"] = equal_weights(cell_of(grains))
+    size = np.concatenate([file["row_size_fragment"].values for file in files])
+    table = grains.loc[grains.index.repeat(size)].reset_index(drop=True)
     for name in FRAGMENT_COLUMNS:
-        joined[name] = ("fragment", np.concatenate([file[name].values for file in files]))
-    return fragment_table(joined)
+        table[name] = np.concatenate([file[name].values for file in files])
+    table["mass_fraction"] = table["fragment_mass"] / table["grain_mass"]
+    before = table.groupby("grain")["mass_fraction"].cumsum() - table["mass_fraction"]
+    table["half"] = before < HALF
+    table["disruption"] = table["fragment_omega"] <= table["omega_disr"]
+    return table
+
+
+def _grains_of(file):
+    """What `spun_up_fragments` tells of the grains of a file."""
+    own = {name: file[name].values for name in ("a_eff", "seed", "omega_disr")}
+    own |= {"grain_mass": file["initial_mass"].values, "n_monomers": file["initial_n_monomers"].values}
+    return pd.DataFrame({"material": file.attrs["material"], "type": file.attrs["type"], **own})
 
 
 def size_class(a_eff):
@@ -186,51 +112,34 @@ def size_class(a_eff):
     return pd.cut(a_eff, [*low, math.inf], right=False, labels=list(SIZE_CLASSES))
 
 
-MONOMER_BINS = (1, 2, 4, 11, np.inf)
-"""Edges of classes of fragments by number of monomers: 1, 2-3, 4-10, 11 and more."""
-
-MONOMER_CLASSES = ("1 monomer", "2–3", "4–10", "more than 10")
+MONOMER_CLASSES = {"1 monomer": 1, "2–3": 3, "4–10": 10, "more than 10": np.inf}
+"""Name of a class of fragments -> greatest number of monomers, ascending."""
 
 
-def fragment_shares(fragments, stage, seed=0):
-    """Shares of fragments of different size in the mass and the number of those that left.
+def mass_shares(fragments, classes=MONOMER_CLASSES):
+    """Shares of fragments of so many monomers in the mass of some fragments, those of a grain with its weight.
 
     Parameters
     ----------
     fragments : pandas.DataFrame
-        From `fragmentation.fragment_table`.
-    stage : str
-        One of `fragmentation.STAGES`.
-    seed : int
-        Of the bootstrap over grains.
+        Of one type, from `spun_up_fragments`.
+    classes : dict of str to float
+        As `MONOMER_CLASSES`.
 
     Returns
     -------
-    pandas.DataFrame
-        A row a type and class: mass_share and number_share with `_error`, NaN for one grain; n_fragments, n_grains
-        (that lost any). Each fragment has the weight of its grain.
+    dict of str to ratd.base.measured.Measured
+        With the standard error of a ratio of sums over grains, NaN for one grain.
     """
-    rng = np.random.Generator(np.random.PCG64(seed))
-    rows = []
-    chosen = fragments[fragments[stage]]
-    for kind, part in chosen.groupby("type"):
-        which = np.digitize(part["fragment_n_monomers"], MONOMER_BINS) - 1
-        grain = pd.factorize(part["grain"])[0]
-        n = grain.max() + 1
-        mass, number = np.zeros((n, len(MONOMER_CLASSES))), np.zeros((n, len(MONOMER_CLASSES)))
-        np.add.at(mass, (grain, which), part["weight"] * part["mass_fraction"])
-        np.add.at(number, (grain, which), part["weight"])
-        drawn = rng.integers(n, size=(N_BOOTSTRAP, n))
-        shares = {}
-        for name, values in (("mass_share", mass), ("number_share", number)):
-            total = values[drawn].sum(axis=1)
-            error = np.std(total / total.sum(axis=1, keepdims=True), axis=0, ddof=1)
-            shares[name] = values.sum(axis=0) / values.sum()
-            shares[f"{name}_error"] = error if n > 1 else np.full_like(error, np.nan)
-        for k, label in enumerate(MONOMER_CLASSES):
-            own = {name: float(values[k]) for name, values in shares.items()}
-            rows.append({"type": kind, "class": label, **own, "n_fragments": len(part), "n_grains": int(n)})
-    return pd.DataFrame(rows)
+    which = np.searchsorted(list(classes.values()), fragments["fragment_n_monomers"])
+    grain = pd.factorize(fragments["grain"])[0]
+    n = grain.max() + 1
+    mass = np.zeros((n, len(classes)))
+    np.add.at(mass, (grain, which), fragments["weight"] * fragments["mass_fraction"])
+    share = mass.sum(axis=0) / mass.sum()
+    off = mass - share * mass.sum(axis=1, keepdims=True)  # of each grain, in the mass of a class
+    error = np.sqrt((off**2).sum(axis=0) * n / (n - 1)) / mass.sum() if n > 1 else np.full(len(share), np.nan)
+    return {name: Measured(*each) for name, *each in zip(classes, share.tolist(), error.tolist(), strict=True)}
 
 
 def exponents(fragments, stage="half", confidence=0.95, replicates=400, seed=0):
@@ -241,7 +150,7 @@ def exponents(fragments, stage="half", confidence=0.95, replicates=400, seed=0):
     fragments : pandas.DataFrame
         From `spun_up_fragments`.
     stage : str
-        One of `fragmentation.STAGES`.
+        One of `STAGES`.
     confidence : float
         Probability inside the intervals.
     replicates : int

@@ -103,10 +103,7 @@ def spun_up(growth, how, seed, *, checkpoint=None, source=""):
     row = disruption(run)
     for name, value in (before_marks(run, row) | {"source": source}).items():
         row[name] = value
-    fragments = fragmentation(run, row)
-    for name in fragments.data_vars:
-        if fragments[name].dims:
-            row[name] = fragments[name]
+    row.update(fragmentation(run, row))
     row["missing_marks"] = row.attrs.pop("missing_marks")
     if checkpoint is not None:
         Path(checkpoint).unlink(missing_ok=True)

@@ -5,9 +5,8 @@ import pandas as pd
 from matplotlib.patches import Patch
 
 from ratd.base.errors import InputError
-from ratd.base.measured import Measured
 from ratd.base.words import plural
-from ratd.experiments.spin_up.fragmentation import SIZE_CLASSES, STAGES, size_class
+from ratd.experiments.spin_up.fragmentation import SIZE_CLASSES, STAGES, mass_shares, size_class
 from ratd.experiments.spin_up.figures.style import type_style
 from ratd.pictures.snapshots import drive_text
 from ratd.pictures.style import GREY, TWO_COLUMNS, logarithmic, new_figure, styled
@@ -20,6 +19,7 @@ SHARES = {
     "more than 10": (np.inf, "#DDDDDD"),
 }
 """Name of a class of fragments -> greatest number of monomers, colour."""
+GREATEST = {name: most for name, (most, _) in SHARES.items()}
 LINES = {"BA": "-", "BAM1": (0, (5, 1.5)), "BAM2": (0, (1.5, 1))}
 
 
@@ -30,7 +30,7 @@ def fragments(table, drive=None, stage="half"):
     Parameters
     ----------
     table : pandas.DataFrame
-        From `fragmentation.fragment_table`, of one drive.
+        From `fragmentation.spun_up_fragments`, of one drive.
     drive : str, optional
         Named in the title.
     stage : str
@@ -108,31 +108,6 @@ def cumulative(table):
     return pd.DataFrame({"mass_fraction": table["mass_fraction"], "number": number}).reset_index(drop=True)
 
 
-def shares(table):
-    """Shares of the classes of `SHARES` in the mass of fragments, each with the weight of its grain.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of one type and class.
-
-    Returns
-    -------
-    dict of str to ratd.base.measured.Measured
-        With the standard error of a ratio of sums over grains, NaN for one grain.
-    """
-    greatest = [most for most, _ in SHARES.values()]
-    which = np.searchsorted(greatest, table["fragment_n_monomers"])
-    grain = pd.factorize(table["grain"])[0]
-    mass = np.zeros((grain.max() + 1, len(SHARES)))
-    np.add.at(mass, (grain, which), table["weight"] * table["mass_fraction"])
-    found = mass.sum(axis=0) / mass.sum()
-    off = mass - found * mass.sum(axis=1, keepdims=True)  # of each grain, in the mass of a class
-    n = len(mass)
-    error = np.sqrt((off**2).sum(axis=0) * n / (n - 1)) / mass.sum() if n > 1 else np.full(len(found), np.nan)
-    return {name: Measured(*each) for name, *each in zip(SHARES, found.tolist(), error.tolist(), strict=True)}
-
-
 def _bars(axes, table, style):
     """Bars of the shares, one a type; those of 10 % and more tell their number. Returns the greatest error."""
     most = 0.0
@@ -141,7 +116,7 @@ def _bars(axes, table, style):
         if not len(here):
             continue
         left = 0.0
-        for name, (share, error) in shares(here).items():
+        for name, (share, error) in mass_shares(here, GREATEST).items():
             colour, most = SHARES[name][1], np.fmax(most, error)
             axes.barh(-row, 100 * share, left=left, height=0.7, color=colour)
             if share >= 0.1:

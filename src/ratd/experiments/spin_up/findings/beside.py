@@ -7,7 +7,7 @@ from scipy.constants import Julian_year
 from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
-from ratd.experiments.spin_up.cells import MATERIALS, size_key
+from ratd.experiments.spin_up.cells import MATERIALS
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.contact_law import printed_twist
@@ -25,7 +25,7 @@ from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
     "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs", "of_printed_twist",
-    "of_printed_pace", "of_printed_pairs", "of_ways", "recomputed",
+    "of_printed_pace", "of_printed_pairs", "of_ways",
 ]  # fmt: skip
 
 ROLLING = 3.2 * NM
@@ -191,28 +191,6 @@ def of_formulae(table):
     for (formula, kind), part in table[table["formula"] != OWN].groupby(["formula", "type"]):
         values[f"formulae.{formula} {kind}"] = median(part[f"{MARK}_ratio"])
     return values
-
-
-def recomputed(older, newer):
-    """Grains of two tables, the newer over the older: how many, median with its error, least and most.
-
-    ``check.n`` counts all, ``check.ratios`` those that lose a quarter in both, ``check.larger`` those above
-    ``check.largest`` [nm], the greatest size of which there are all.
-    """
-    keys = ["material", "type", "size", "seed"]
-    older, newer = (table.assign(size=size_key(table["a_eff"])) for table in (older, newer))
-    pairs = newer.merge(older, on=keys, suffixes=("", "_older"))
-    ratio = pairs[MARK] / pairs[f"{MARK}_older"]
-    n_older, n = (table["a_eff"].div(NM).round().value_counts() for table in (older, pairs))
-    largest = float(n.index[n == n_older[n.index]].max())
-    return {
-        "check.n": len(pairs),
-        "check.ratios": int(ratio.count()),
-        "check.largest": largest,
-        "check.larger": int(n[n.index > largest].sum()),
-        "check.ratio": median(ratio),
-        "check.range": f"{ratio.min():.3f} to {ratio.max():.3f}",
-    }
 
 
 def of_lammps(driven, default, starts):

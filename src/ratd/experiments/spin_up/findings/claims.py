@@ -14,7 +14,7 @@ from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
 from ratd.experiments.spin_up.findings.ensemble import CLASSES, middle, of_class
 from ratd.experiments.spin_up.marks import MARK
-from ratd.experiments.spin_up.fragmentation import fragment_shares
+from ratd.experiments.spin_up.fragmentation import mass_shares
 from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
 from ratd.experiments.spin_up.printed import FIRST_LOSS, PAPER_MEAN_RADIUS, PRINTED_GRAINS
 from ratd.base.measured import Measured, median
@@ -69,7 +69,7 @@ def claims(letter, table, fragments):
     table : pandas.DataFrame
         As `ratd.experiments.spin_up.findings.ensemble.beside_print` returns it.
     fragments : pandas.DataFrame
-        As `ratd.experiments.spin_up.fragmentation.fragment_table` returns it.
+        As `ratd.experiments.spin_up.fragmentation.spun_up_fragments` returns it.
 
     Returns
     -------
@@ -136,14 +136,13 @@ def _how(letter, table, fragments):
         part = of_class(table[table["type"] == "BA"], name)
         ratio = values[f"{letter}.disr over quarter BA {name}"] = median(part["omega_disr"] / part[MARK], cell_of(part))
         values[f"{letter}.holds quarter BA {name}"] = is_within(ratio, 0.8, 1.25)
-    half = fragments[fragments["half"]].groupby("grain")
-    pieces = _by_type(half["mass_fraction"].max(), half[["material", "type", "a_eff"]].first())
+    half = fragments[fragments["half"]]
+    grains = half.groupby("grain")
+    pieces = _by_type(grains["mass_fraction"].max(), grains[["material", "type", "a_eff"]].first())
     for kind, piece in pieces.items():
         values[f"{letter}.largest piece {kind}"] = piece
     values[f"{letter}.holds continuous"] = all_of(is_below(piece, 0.1) for piece in pieces.values())
-    shares = fragment_shares(fragments, "half")
-    single = shares[(shares["class"] == "1 monomer") & shares["type"].isin(BAM)]
-    found = [Measured(row["mass_share"], row["mass_share_error"]) for row in single.to_dict("records")]
+    found = [mass_shares(half[half["type"] == kind])["1 monomer"] for kind in BAM]
     values[f"{letter}.holds single"] = all_of(is_above(share, 0.8) for share in found)
     gain = table["n_contacts_max"] / table["n_contacts"]
     gains = _by_type(gain, table)

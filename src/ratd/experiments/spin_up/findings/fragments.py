@@ -5,7 +5,7 @@ import numpy as np
 from ratd.base.statistics import mean_of
 from ratd.base.measured import Measured
 from ratd.experiments.spin_up.cells import size_key
-from ratd.experiments.spin_up.fragmentation import exponents, fragment_shares, size_class
+from ratd.experiments.spin_up.fragmentation import exponents, mass_shares, size_class
 
 __all__ = ["of_all_that_left", "of_exponents", "of_shares"]
 
@@ -20,17 +20,16 @@ def of_shares(letter, fragments):
 
     Of the small sizes (`SMALL`) one by one too, since there they fall with size.
     """
-    values = {}
-    sizes = size_key(fragments["a_eff"]) / 1000.0
-    for size in SMALL:
-        for row in fragment_shares(fragments[sizes == size], "half").to_dict("records"):
-            start = f"{letter}.fragments {row['type']} {size} nm {row['class']}"
-            values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
-    for name, part in fragments.groupby(size_class(fragments["a_eff"]), observed=True):
-        for row in fragment_shares(part, "half").to_dict("records"):
-            start = f"{letter}.fragments {row['type']} {name} {row['class']}"
-            values[start] = Measured(100 * row["mass_share"], 100 * row["mass_share_error"])
-    return values
+    half = fragments[fragments["half"]]
+    nm = size_key(half["a_eff"]) / 1000.0
+    parts = {f"{size} nm": half[nm == size] for size in SMALL}
+    parts |= dict(iter(half.groupby(size_class(half["a_eff"]), observed=True)))
+    return {
+        f"{letter}.fragments {kind} {name} {monomers}": Measured(100.0 * share.value, 100.0 * share.error)
+        for name, part in parts.items()
+        for kind, own in part.groupby("type")
+        for monomers, share in mass_shares(own).items()
+    }
 
 
 def of_all_that_left(letter, runs):
