@@ -14,7 +14,7 @@ from ratd.base.errors import FileError
 from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import TYPES, size_key
+from ratd.experiments.spin_up.cells import TYPES, joined
 from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.run_files import read_table
@@ -176,9 +176,7 @@ def against(now, before):
     -------
     dict
     """
-    key = ["material", "type", "size", "seed"]
-    now, before = (table.assign(size=size_key(table["a_eff"])) for table in (now, before))
-    pairs = now.merge(before, on=key, suffixes=("", "_before"))
+    pairs = joined(now, before, MARKS, suffix="_before")
     values = {"ensemble.grains": len(now), "ensemble.pairs": len(pairs)}
     values["ensemble.unfinished"] = int((now["end_reason"] != "one contact left").sum())
     for kind in TYPES:

@@ -10,7 +10,7 @@ import xarray as xr
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
 from ratd.base.materials import Material, get_material
-from ratd.experiments.spin_up.cells import cell_of, cell_statistics, size_key, sort_cells
+from ratd.experiments.spin_up.cells import cell_of, cell_statistics, joined, size_key, sort_cells
 from ratd.experiments.spin_up.eq33 import (
     TABLE_3,
     eq33,
@@ -138,6 +138,20 @@ def test_sizes_are_told_apart_to_the_picometre():
     table = grain_table([grown(a_eff=350 * 1e-9)], marks)
     assert table["omega_disr"].notna().all()
     assert size_key(pd.Series([199.9999999e-9, 2e-7, 200.0000001e-9])).tolist() == [200000] * 3
+
+
+def test_a_grain_finds_itself_in_another_table():
+    table = pd.DataFrame(
+        {"material": "q-S", "type": "BA", "a_eff": [3e-7, 350 * 1e-9, 1e-7], "seed": 0, "omega": [3.0, 2.0, 1.0]}
+    )
+    other = table[:2].assign(a_eff=[3e-7, 350e-9], omega=[4.0, 5.0], more=1)
+    found = joined(table, other[::-1], ["omega"])
+    assert found[["omega", "omega_other"]].to_numpy().tolist() == [[3.0, 4.0], [2.0, 5.0]] and "more" not in found
+    kept = joined(table, other.assign(seed=[0, 1]), ["omega"], how="left", suffix=" again")
+    assert kept["omega"].tolist() == [3.0, 2.0, 1.0]
+    np.testing.assert_array_equal(kept["omega again"], [4.0, np.nan, np.nan])
+    with pytest.raises(pd.errors.MergeError):
+        joined(table, pd.concat([other, other]), ["omega"])
 
 
 def test_rows_stand_in_the_order_of_the_paper(table):

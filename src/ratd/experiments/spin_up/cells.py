@@ -9,7 +9,7 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 
-__all__ = ["as_frame", "cell_of", "cell_statistics", "size_key", "sort_cells"]
+__all__ = ["as_frame", "cell_of", "cell_statistics", "joined", "size_key", "sort_cells"]
 
 MATERIALS = ("a-C", "q-S", "co-S")
 """Materials in the order of the paper."""
@@ -94,6 +94,35 @@ def cell_of(table):
 def size_key(a_eff):
     """Sizes [m], a Series, as whole picometres, so that rounding in the last digit makes no new size."""
     return np.rint(a_eff.astype(float) / 1e-12).astype(np.int64)
+
+
+def joined(table, other, columns, how="inner", suffix="_other"):
+    """Rows of a table with columns of the same grain (material, type, size, seed) in another.
+
+    Parameters
+    ----------
+    table, other : pandas.DataFrame
+        With the columns material, type, a_eff [m] and seed; a grain is in `other` once at most.
+    columns : sequence of str
+        Of `other`.
+    how : str
+        ``"inner"``, or ``"left"``: rows of grains that `other` does not have stay, with NaN.
+    suffix : str
+        Appended to the name of a column that `table` has as well.
+
+    Returns
+    -------
+    pandas.DataFrame
+        In the order of `table`, with the column size [pm], see `size_key`.
+
+    Raises
+    ------
+    pandas.errors.MergeError
+        If `other` has a grain twice.
+    """
+    key = ["material", "type", "size", "seed"]
+    left, right = (own.assign(size=size_key(own["a_eff"])) for own in (table, other))
+    return left.merge(right[[*key, *columns]], on=key, how=how, suffixes=("", suffix), validate="many_to_one")
 
 
 def as_frame(table, where, columns):

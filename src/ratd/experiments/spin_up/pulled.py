@@ -13,7 +13,7 @@ import pandas as pd
 
 from ratd.aggregates.strength import TENSILE_FACTOR, midplane_tension, tensile_strength_tatsuuma2019
 from ratd.base.errors import InputError
-from ratd.experiments.spin_up.cells import size_key, sort_cells
+from ratd.experiments.spin_up.cells import joined, sort_cells
 from ratd.pipeline import io
 from ratd.pipeline.blocks import material_of, rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
@@ -150,12 +150,10 @@ def beside_spin(table, spun):
         The table with the marks; for each ``spin_MARK``, the mean tension in the mid-plane of the turning sphere that
         stands for the grain, in units of gamma/<a> phi^1.8. NaN for a grain that was not spun up.
     """
-    keys = ["material", "type", "size", "seed"]
-    known = spun.assign(size=size_key(spun["a_eff"]))[[*keys, *MARKS.values()]]
-    joined = table.assign(size=size_key(table["a_eff"])).merge(known, on=keys, how="left", validate="many_to_one")
-    phi = joined["filling_factor"]
-    outer = outer_radius(joined["a_eff"], phi)
+    both = joined(table, spun, MARKS.values(), how="left")
+    phi = both["filling_factor"]
+    outer = outer_radius(both["a_eff"], phi)
     for mark in MARKS.values():
-        tension = midplane_tension(joined[mark], joined["density"], phi, outer)
-        joined[f"spin_{mark}"] = _ratio(tension, joined, phi)
-    return joined
+        tension = midplane_tension(both[mark], both["density"], phi, outer)
+        both[f"spin_{mark}"] = _ratio(tension, both, phi)
+    return both

@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from ratd.base.errors import InputError
 from ratd.base.words import plural
-from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.cells import joined
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
@@ -97,9 +97,7 @@ def over_the_paper(table, column):
 
 def _bounds(axes, firm, grains, style, shifts):
     """Median of the bound over Eq. 33 of each type and size, a line a type, where its markers stand."""
-    keys = ["material", "type", "size", "seed"]
-    bounds, grains = (table.assign(size=size_key(table["a_eff"])) for table in (firm, grains))
-    known = grains.merge(bounds[[*keys, "firm_bound"]], on=keys, validate="one_to_one")
+    known = joined(grains, firm, ["firm_bound"])
     known = known.assign(ratio=over_the_paper(known, "firm_bound"))
     for kind, look in style.items():
         median = known[known["type"] == kind].groupby("size")["ratio"].median()

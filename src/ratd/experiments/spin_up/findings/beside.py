@@ -7,7 +7,7 @@ from scipy.constants import Julian_year
 from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
-from ratd.experiments.spin_up.cells import MATERIALS
+from ratd.experiments.spin_up.cells import MATERIALS, joined
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.contact_law import printed_twist
@@ -142,8 +142,7 @@ def of_printed_pace(driven, printed, acceleration, factor):
     own = printed[
         (printed["material"] == material) & (printed["type"] == kind) & np.isclose(printed["a_eff"], size, atol=0.0)
     ]
-    keys = ["material", "type", "nm", "seed"]
-    grains = own.merge(driven[[*keys, "omega_first_loss"]], on=keys, suffixes=("", "_driven"))
+    grains = joined(own, driven, ["omega_first_loss"], suffix="_driven")
     step = grains["timestep"] * PRINTED_STEP / factor
 
     def parts(rate):

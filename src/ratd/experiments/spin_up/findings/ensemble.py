@@ -13,7 +13,7 @@ from ratd.aggregates.strength import midplane_tension, tensile_strength_tatsuuma
 from ratd.base.materials import get_material
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, size_key
+from ratd.experiments.spin_up.cells import MATERIALS, TYPES, cell_of, joined, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega, fit_ensemble
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS, TABLE_3
@@ -214,10 +214,7 @@ def what_contacts_hold(grown, firm, table):
     table : pandas.DataFrame
         The grains that were spun up, as `beside_print` returns it.
     """
-    keys = ["material", "type", "size", "seed"]
-    firm = firm.assign(size=size_key(firm["a_eff"]))[[*keys, "firm_bound"]]
-    grown = grown.assign(size=size_key(grown["a_eff"])).merge(firm, on=keys)
-    table = table.assign(size=size_key(table["a_eff"])).merge(firm, on=keys)
+    grown, table = (joined(own, firm, ["firm_bound"]) for own in (grown, table))
     above = grown["printed"] > grown["firm_bound"]
     load = (grown["printed"] / grown["firm_bound"]) ** 2
     # what would bring the two nearer: stronger contacts, and the mean radius of the grains in the printed formula

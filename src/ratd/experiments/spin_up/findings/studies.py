@@ -14,7 +14,7 @@ from ratd.aggregates.growth import grain_radii
 from ratd.aggregates.radii import RadiusDistribution
 from ratd.base.errors import FileError
 from ratd.base.statistics import equal_weights, mean_of, slope_error, slope_of
-from ratd.experiments.spin_up.cells import TYPES, cell_of, size_key
+from ratd.experiments.spin_up.cells import TYPES, cell_of, joined, size_key
 from ratd.experiments.spin_up.eq33 import eq33_omega
 from ratd.experiments.spin_up.findings.claims import all_of, is_below
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
@@ -121,9 +121,7 @@ def paired(table, beside):
     pandas.DataFrame
         The rows of `table` that have such a grain, with ``NAME_ratio`` for each of `MARKS`.
     """
-    key = ["material", "type", "size", "seed"]
-    first, second = (own.assign(size=size_key(own["a_eff"])) for own in (table, beside))
-    pairs = first.merge(second[[*key, *MARKS]], on=key, suffixes=("", "_beside"))
+    pairs = joined(table, beside, MARKS, suffix="_beside")
     return pairs.assign(**{f"{mark}_ratio": pairs[mark] / pairs[f"{mark}_beside"] for mark in MARKS})
 
 
