@@ -94,7 +94,8 @@ def test_omega_over_print_and_its_powers_of_size_are_found():
     for kind in TYPES:
         assert values[f"d.{kind} 300"].value == pytest.approx(0.1 * np.prod([0.9, 1.0, 1.1]) ** (1 / 3))
         assert values[f"d.slope {kind} a quarter above"].value == pytest.approx(power[kind])
-    assert values["d.n"] == 27 and values["d.seeds"] == 3
+    assert values["d.n"] == 27 and values["d.seeds"] == "3"
+    assert of_drive("d", table[1:])["d.seeds"] == "2 to 3"
     # BA falls fastest: below BAM1 at 550 nm alone, where there is one cell of each type and size
     assert values["d.BA below BAM1"] == 1
 

@@ -125,12 +125,9 @@ def test_marks_that_are_missing_are_left_out():
     assert cell_ratio(first, second, "omega_disr").value == pytest.approx(1.3, rel=1e-12)
 
 
-def test_scaling_by_a_mean_radius(values):
-    """omega sqrt(a) of monomers of 30 nm over that of the ensemble, whose means are 30, 35 and 41 nm."""
-    plain = values["equal_30nm.BA omega_mass_75"].value
+def test_grains_of_other_monomers_are_compared_with_the_ensemble(values):
+    """Monomers of 30 nm, beside those of the ensemble, whose means are 30, 35 and 41 nm."""
     for k, mean in MEANS.items():
-        scaled = values[f"equal_30nm.BA omega_mass_75 scaled {k}"].value
-        assert scaled == pytest.approx(plain * np.sqrt(30e-9 / mean), rel=1e-12)
         assert values[f"equal_30nm.all radius {k}"].value == pytest.approx(30e-9 / mean, rel=1e-12)
     number = values["equal_30nm.all n_monomers"]
     assert number.value == pytest.approx((41 / 30) ** 3, abs=4 * number.error)

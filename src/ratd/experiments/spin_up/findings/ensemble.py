@@ -63,7 +63,8 @@ def of_drive(letter, table):
     dict
         Name of a slot -> value.
     """
-    values = {f"{letter}.n": len(table), f"{letter}.seeds": int(table.groupby(cell_of(table)).size().median())}
+    seeds = np.unique(table.groupby(cell_of(table)).size())
+    values = {f"{letter}.n": len(table), f"{letter}.seeds": " to ".join(map(str, dict.fromkeys(seeds[[0, -1]])))}
     values[f"{letter}.unfinished"] = int((~table["omega_disr"].notna()).sum())
     values[f"{letter}.no quarter"] = int(table[MARK].isna().sum())
     ratio = table[MARK] / table["printed"]

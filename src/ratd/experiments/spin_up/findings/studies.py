@@ -227,9 +227,8 @@ def of_studies(tables):
         material, as in ``dmt.q-S BAM1 omega_mass_75``. ``printed.TYPE MARK table 3`` is over Eq. 33 with the printed
         Table 3.
 
-        For other monomers also ``scaled k`` behind the mark, the same for omega sqrt(<a^k>^(1/k)), which Eq. 33 has at
-        the same N_con and phi; ``law k``, see `carried_over`, with the exponent ``law.TYPE MARK alpha k``; and ratios
-        of ``n_monomers``, ``n_contacts``, ``filling_factor`` and ``radius k``.
+        For other monomers also ``law k`` behind the mark, see `carried_over`, with the exponent ``law.TYPE MARK alpha
+        k``; and ratios of ``n_monomers``, ``n_contacts``, ``filling_factor`` and ``radius k``.
 
         ``equal.TYPE MARK exponent`` is p in omega ~ radius^p of equal monomers at a given size, ``equal.MARK chi2 k``
         how far off `carried_over` is for them in all (six ratios), ``equal.MARK mean`` and ``worst`` the mean radii
@@ -281,19 +280,10 @@ def _over_table_3(table):
     return values
 
 
-def _scaled(table):
-    """A table with marks times the root of each mean radius."""
-    return table.assign(
-        **{f"{mark} scaled {k}": table[mark] * np.sqrt(table[f"radius_{k}"]) for mark in MARKS for k in POWERS}
-    )
-
-
 def _other(name, table, ensemble):
     """Slots of a study with other monomers."""
-    table, ensemble = _scaled(table), _scaled(ensemble)
     columns = {mark: mark for mark in ("n_monomers", "n_contacts", "filling_factor", *MARKS)}
     columns |= {f"radius {k}": f"radius_{k}" for k in POWERS}
-    columns |= {f"{mark} scaled {k}": f"{mark} scaled {k}" for mark in MARKS for k in POWERS}
     values = {f"{name}.grains": len(table)}
     for kind, part in _parts(table):
         for slot, column in columns.items():
