@@ -6,10 +6,10 @@ A *cell* is a law, a cluster, one of its samples, a velocity and an impact param
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 
-from ratd.pipeline.places import any_of
 from ratd.base.errors import InputError
 from ratd.base.units import NM
 from ratd.pipeline import config as configs
+from ratd.pipeline.places import any_of
 
 __all__ = ["BUILT", "FIGURES", "RELAXED", "RUNS", "TITLES", "Cell", "Plan", "check", "load"]
 
