@@ -64,9 +64,10 @@ FIRST = 0.7
 CLASSES = 32
 """Classes of radius in LAMMPS: 7 % wide each."""
 LARGE = tuple((material, kind, 200, 0) for material in ("co-S", "a-C") for kind in TYPES) + tuple(
-    ("q-S", kind, size, 0) for size in (300, 550) for kind in TYPES
+    ("q-S", kind, size, 0) for size in (300, 550) for kind in TYPES[::-1]
 )
-"""Material, type, size [nm] and seed of the grains that are driven in LAMMPS here, beside `CONTROLS`."""
+"""Material, type, size [nm] and seed of the grains that are driven in LAMMPS here, beside `CONTROLS`; of a size the
+short ones first."""
 CONTROLS = tuple(("q-S", kind, 200, 0) for kind in TYPES)
 NEAR = 0.05
 """Part by which the median of LAMMPS may be off the spin-up of production, see `findings`."""
