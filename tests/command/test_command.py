@@ -22,7 +22,7 @@ from ratd.experiments.command import SHIFT, answer, moved, part_done
 from ratd.experiments.compression.command import pressure_at
 from ratd.experiments.saved import KNOWN_BY
 from ratd.experiments.spin_up import command, run_files
-from ratd.pipeline import io
+from ratd.pipeline import io, provenance
 from ratd.pipeline.blocks import rows
 from ratd.pipeline.kinds import HOMES
 
@@ -229,6 +229,19 @@ def test_more_starts_are_added_to_those_that_are_there_and_fewer_take_none_away(
     made = [run_files.read_runs(chain.with_name(f"{name}.nc")) for name in ("chain_spin_up", "whole")]
     for own, other in zip(*made, strict=True):
         assert own.equals(other)
+
+
+def test_starts_made_with_other_packages_are_told_but_no_others_join_them(chain, monkeypatch):
+    target = chain.with_name("chain_spin_up.nc")
+    monkeypatch.setattr(provenance, "versions", lambda: "ratd 1.0.0, pandas 2.0.0")
+    assert run("spin-up", chain, *FAST[:4], "--starts", 2).exit_code == 0
+    made = target.read_bytes()
+    monkeypatch.undo()
+    assert run("spin-up", chain, *FAST[:4], "--starts", 2).exit_code == 0
+    done = run("spin-up", chain, *FAST)
+    said = f"{target} holds 2 starts made with ratd 1.0.0, pandas 2.0.0, to which none of ratd"
+    assert done.exit_code == 1 and said in done.stderr and "remove it, or give another --out" in done.stderr
+    assert target.read_bytes() == made and not list(chain.parent.glob("*.partial"))
 
 
 def test_a_command_that_waited_for_the_same_one_makes_nothing_anew(chain, monkeypatch):

@@ -223,15 +223,15 @@ def several(target, kind, material, provenance, starts, make):
     Raises
     ------
     InputError
-        If the file holds other runs, or others are not finished.
+        If the file holds other runs, or fewer that were made with other packages, or others are not finished.
     """
     block = Block(Path(target), material, list(range(starts)), provenance)
     if _starts_there(block, kind) >= starts:
         return
     if block.others(kind):
         raise InputError(
-            f"{block.folder} holds unfinished runs of another aggregate, other settings or another version of ratd; "
-            "finish them with their own command, remove the folder, or give another --out."
+            f"{block.folder} holds unfinished runs of another aggregate, other settings, or another version of ratd or "
+            "of a package; finish them with their own command, remove the folder, or give another --out."
         )
     ran = cache_file(f"{kind}.ran")
     if not ran.exists():
@@ -273,16 +273,24 @@ def _make_starts(block, kind, there, make):
 
 
 def _starts_there(block, kind):
-    """How many of these very runs the file of a block holds; InputError where it holds those of other settings."""
+    """How many of these very runs the file of a block holds; InputError where others cannot stand beside them."""
     if not block.target.exists():
         return 0
     found = io.read(block.target, kind)
-    if any(found.attrs.get(name) != block.provenance[name] for name in ("code_hash", "settings_hash", "input_hash")):
+    made_with = found.attrs.get("versions")
+    instead = "remove it, or give another --out."
+    if not io.is_made_with(found, block.provenance | {"versions": made_with}):
         raise InputError(
-            f"{block.target} holds runs of another aggregate, other settings or another version of ratd; remove it, or "
-            "give another --out."
+            f"{block.target} holds runs of another aggregate, other settings or another version of ratd; {instead}"
         )
-    return len(rows(found, kind))
+    there = len(rows(found, kind))
+    # a finished file stays good with other packages, but it tells one set of versions for all of its rows
+    if there < len(block.seeds) and not io.is_made_with(found, block.provenance):
+        raise InputError(
+            f"{block.target} holds {plural(there, 'start')} made with {made_with}, to which none of "
+            f"{block.provenance['versions']} can be added; {instead}"
+        )
+    return there
 
 
 class progress_bar:

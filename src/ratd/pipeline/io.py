@@ -17,7 +17,7 @@ from ratd.pipeline import kinds
 from ratd.pipeline.atomic import atomic, reason, write_text
 from ratd.pipeline.places import contradiction
 
-__all__ = ["atomic", "read", "read_made_with", "write", "write_text"]
+__all__ = ["atomic", "is_made_with", "read", "read_made_with", "write", "write_text"]
 
 CONVENTIONS = "CF-1.11"
 REMEDY = "remove it, and the same command makes it anew"
@@ -199,7 +199,7 @@ def read(path, kind):
 
 
 def read_made_with(path, kind, attributes):
-    """Read a file, if it is there, whole, and made with the same source, settings and inputs.
+    """Read a file, if it is there, whole, and made with the same source, settings, inputs and versions.
 
     Parameters
     ----------
@@ -217,4 +217,9 @@ def read_made_with(path, kind, attributes):
         found = read(path, kind)
     except FileError:
         return None
-    return found if all(found.attrs.get(name) == value for name, value in attributes.items()) else None
+    return found if is_made_with(found, attributes) else None
+
+
+def is_made_with(found, attributes):
+    """Whether a dataset that was read has all these attributes, see `read_made_with`."""
+    return all(found.attrs.get(name) == value for name, value in attributes.items())

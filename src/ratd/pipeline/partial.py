@@ -1,8 +1,8 @@
 """Finished grains of files that are not finished: kept on the disk, found again after a kill, removed at the end.
 
 Grains that are finished go into small files, pieces, in the folder `TARGET.partial`, which Snakemake does not know of,
-with the hashes of the source, settings and inputs that they were made with. A job that was killed takes from there what
-still fits, and only that.
+with the hashes of the source, settings and inputs, and the versions, that they were made with. A job that was killed
+takes from there what still fits, and only that.
 
 This module decides no number: it is left out of all source hashes (see `ratd.pipeline.provenance`).
 """
