@@ -36,8 +36,7 @@ rule study_samples:
         "../envs/ratd.yaml"
     params:
         task=task("run", "ratd.experiments.collision.stages:build", "built_clusters"),
-        settings=COLLISIONS.cluster(COLLISIONS.materials["silica"], "mrn")
-        | {"samples": [1, 2, 3]},
+        settings=lambda w: page.samples_settings(),
     message:
         "Build the MRN clusters of the document"
     script:

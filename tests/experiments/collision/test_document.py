@@ -107,6 +107,14 @@ def test_the_committed_figures_are_those_of_the_data(found, tmp_path):
     assert len(drawn) >= 8 and unlike(tmp_path / "drawn", DOCS / "collision") == [], "redraw the document"
 
 
+def test_the_samples_of_the_document_are_those_of_its_collisions_whatever_the_config(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    settings = page.samples_settings()
+    assert (settings["number"], settings["drop_below"], settings["samples"]) == (5000, 0.0, [1, 2, 3])
+    # the plan of what Snakemake was given
+    assert "COLLISIONS" not in (ROOT / "workflow" / "rules" / "collision_document.smk").read_text(encoding="utf-8")
+
+
 def test_digits():
     assert with_error(0.1634, 0.0312) == "0.163 ± 0.031" and with_error(12.34, 1.7) == "12.3 ± 1.7"
     assert (

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 from ratd.experiments.collision.plan import FIGURES as OF_A_CONFIG
-from ratd.experiments.collision.plan import SPACING
+from ratd.experiments.collision.plan import SPACING, load
 
 __all__ = [
+    "CONFIG",
     "DATA",
     "FIGURES",
     "PAGE",
@@ -15,8 +16,11 @@ __all__ = [
     "figure_module",
     "figure_settings",
     "run_files",
+    "samples_settings",
 ]
 
+CONFIG = ("config/config.yaml", "config/collision.yaml", "config/collision_study.yaml")
+"""Config files of the collisions of the document, whatever config Snakemake was given."""
 DATA = "docs/collision/data"
 TABLES = "results/collision_study/{name}.nc"
 SAMPLES = "results/collision_study/samples.nc"
@@ -43,6 +47,12 @@ FIGURES = {
 def run_files():
     """Committed files of collisions without snapshots, sorted list of str."""
     return sorted(str(path) for path in Path(DATA).glob("*/*.nc") if path.parent.name != "pictures")
+
+
+def samples_settings():
+    """Settings of the stage `build` that makes `SAMPLES`, all samples of MRN that are collided."""
+    plan = load(*CONFIG)
+    return plan.build(plan.material_of(_SHOWN["law"]).name, _SHOWN["mrn"])
 
 
 def figure_module(name):

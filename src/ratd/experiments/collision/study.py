@@ -16,6 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from ratd.experiments.collision import plan as plans
+from ratd.experiments.collision.document_plan import CONFIG, DATA
 from ratd.experiments.collision.run import at_rest
 from ratd.experiments.collision.stages import built, collided, law_from
 from ratd.pipeline.provenance import settings_hash, source_hash
@@ -23,8 +24,6 @@ from ratd.pipeline.queue import Table, Task, command, key
 
 __all__ = ["CONFIG", "DATA", "PICTURES", "main", "tasks"]
 
-CONFIG = ("config/config.yaml", "config/collision.yaml", "config/collision_study.yaml")
-DATA = "docs/collision/data"
 PICTURES = ("pictures/figure3.nc", "pictures/figure4.nc")
 """Files in it of the collisions with snapshots."""
 _clusters = {}
