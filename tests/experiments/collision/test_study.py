@@ -115,6 +115,23 @@ def test_an_undisturbed_queue_gives_the_same_bytes(done, tmp_path):
         assert (tmp_path / path.relative_to(done)).read_bytes() == path.read_bytes()
 
 
+def test_a_collision_goes_on_from_its_checkpoint_when_its_cell_gets_more_rotations(tmp_path, monkeypatch):
+    def caught(*_, checkpoint, **__):
+        raise RuntimeError(checkpoint.name)
+
+    def names(plan):
+        return [str(pytest.raises(RuntimeError, task.make).value) for task in study.tasks(plan, tmp_path / "data")]
+
+    monkeypatch.setattr(study, "_at_rest", lambda *_: None)
+    monkeypatch.setattr(study, "collided", caught)
+    one = plan(tmp_path)
+    (entry,) = one.config["runs"]
+    (shown,) = one.config["snapshots"]["runs"]
+    more = plan(tmp_path, runs=[entry | {"rotations": {"first": 0, "number": 3}}],
+                snapshots={"every": 6, "runs": [shown, shown | {"rotation": 2}]})  # fmt: skip
+    assert len(set(names(one))) == 9 and set(names(one)) < set(names(more))
+
+
 def test_other_settings_under_the_same_name_are_refused(done):
     with pytest.raises(InputError, match="equal.nc: holds rows with other settings than the config has"):
         study.tasks(plan(done, cluster_radius_um=1.7), done / "data")

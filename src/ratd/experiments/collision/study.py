@@ -80,7 +80,9 @@ def _collision(plan, cell, rotation, source, snapshot_every):
     settings = plan.settings_of(cell)
     own = plan.cluster(plan.material_of(cell.law), cell.cluster)
     cluster = _at_rest(own, settings["law"], cell.sample)
-    checkpoint = Path(plan.results, "checkpoints", f"{settings_hash(settings)}_{rotation}_{snapshot_every}.npz")
+    # whatever other rotations the cell has
+    own_alone = {key: value for key, value in settings.items() if key not in ("rotations", "snapshots")}
+    checkpoint = Path(plan.results, "checkpoints", f"{settings_hash(own_alone)}_{rotation}_{snapshot_every}.npz")
     row = collided(cluster, settings, rotation, snapshot_every=snapshot_every, checkpoint=checkpoint, source=source)
     checkpoint.unlink(missing_ok=True)
     return row, (
