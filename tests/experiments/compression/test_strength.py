@@ -261,6 +261,22 @@ def test_sets_are_compared_on_the_clusters_that_both_have():
     assert found.error == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
+def test_a_cluster_counts_where_both_of_its_runs_reach_all_of_the_range():
+    """Whichever each set lacks, and in whatever order and bins they stand, a cluster stands beside itself."""
+    table, other = (table_of(lambda phi, f=f: f * P_0 * phi**3, seeds=6, scatter=0.5) for f in (0.8, 1.0))
+    table["seed"] = other["seed"] = ("seed_number", range(6))
+    table["pressure"][0, -50:], other["pressure"][3, -50:] = np.nan, np.nan
+    fewer = other.copy(deep=True)
+    fewer["pressure"][4, -50:] = np.nan
+    turned = other.isel(seed_number=[5, 3, 4, 1, 2, 0], phi_bin=slice(53, None))
+    for own, n in ((other, 4), (fewer, 3), (turned, 4)):
+        found = strength.compared(table, own)
+        assert found.n == n and found.value == pytest.approx([0.8, 0.0], abs=1e-9)
+        assert found.error == pytest.approx([0.0, 0.0], abs=1e-9)
+    with pytest.raises(ratd.InputError, match="no run covers the filling factors from 0.03 to 0.12"):
+        strength.compared(table.isel(seed_number=[0, 3]), other.isel(seed_number=[0, 3]))
+
+
 def test_pressures_along_the_axes_and_their_spread():
     table = table_of(lambda phi: P_0 * phi**3)
     for name, part in (("xx", 1.2), ("yy", 1.0), ("zz", 0.8)):

@@ -10,7 +10,7 @@ from ratd.base.checks import is_number
 from ratd.base.errors import InputError
 from ratd.base.measured import Measured
 from ratd.base.statistics import jackknife_error
-from ratd.experiments.compression.tables import BIN, bins, in_bins
+from ratd.experiments.compression.tables import BIN, bins, in_bins, shared_bins
 
 __all__ = [
     "FIT_RANGE",
@@ -91,19 +91,24 @@ def of_clusters(n, fit):
     return Fit(value, np.array([jackknife_error(column) for column in left.T]), n)
 
 
-def _within(table, low, high):
-    """Filling factors of bins inside a range, and pressures there, (seeds, bins), of seeds that reach all of them."""
+def _reaching(table, low, high):
+    """Bins inside a range of filling factors, and seeds that reach all of them: two arrays of bool."""
     phi = table["phi"].values
     inside = (phi >= low) & (phi <= high)
-    pressure = table["pressure"].values[:, inside]
-    whole = np.isfinite(pressure).all(axis=1)
+    whole = np.isfinite(table["pressure"].values[:, inside]).all(axis=1)
     covered = phi.min() / BIN <= low * NEAR and phi.max() * BIN >= high / NEAR
     if not inside.any() or not whole.any() or not covered:
         raise InputError(
             f"no run covers the filling factors from {low:g} to {high:g}; take a low and a high between "
             f"{phi.min():.3g} and {phi.max():.3g}."
         )
-    return phi[inside], pressure[whole]
+    return inside, whole
+
+
+def _within(table, low, high):
+    """Filling factors of bins inside a range, and pressures there, (seeds, bins), of seeds that reach all of them."""
+    inside, whole = _reaching(table, low, high)
+    return table["phi"].values[inside], table["pressure"].values[np.ix_(whole, inside)]
 
 
 def fit_power_law(table, low=FIT_RANGE[0], high=FIT_RANGE[1]):
@@ -286,13 +291,14 @@ def along_axes(table, phi):
 
 
 def of_same_clusters(tables):
-    """The tables with the seeds alone that all of them have."""
-    common = set.intersection(*(set(table["seed"].values.tolist()) for table in tables))
-    return [table.isel(seed_number=np.isin(table["seed"].values, list(common))) for table in tables]
+    """The tables with the seeds alone that all of them have, in the same order."""
+    rows = [{seed: k for k, seed in enumerate(table["seed"].values.tolist())} for table in tables]
+    common = sorted(set.intersection(*map(set, rows)))
+    return [table.isel(seed_number=[row[seed] for seed in common]) for table, row in zip(tables, rows, strict=True)]
 
 
 def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
-    """P/(P_0 phi^3) of a set over that of another, of the seeds that both have.
+    """P/(P_0 phi^3) of a set over that of another, of the seeds that reach all of the range in both.
 
     Parameters
     ----------
@@ -305,9 +311,11 @@ def compared(table, other, low=FIT_RANGE[0], high=FIT_RANGE[1]):
         Of (ratio, difference of the exponents): the geometric mean of the ratio over the bins, from the mean pressures
         of the seeds, and its slope in ln phi. The error leaves out one seed of both at a time.
     """
+    # a cluster counts where both of its runs reach all bins: one that a table alone lacks would shift the others
+    pair = of_same_clusters([each.isel(seed_number=_reaching(each, low, high)[1]) for each in (table, other)])
     both = []
-    for each in of_same_clusters([table, other]):
-        phi, pressure = _within(each, low, high)
+    for each, at in zip(pair, shared_bins(*pair), strict=True):
+        phi, pressure = _within(each.isel(phi_bin=at), low, high)
         both.append(pressure / each["rolling_pressure"].values[0] / phi**3)
 
     def fit(mean):
