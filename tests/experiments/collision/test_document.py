@@ -13,6 +13,7 @@ import pytest
 from scipy.stats import norm
 
 from pictures_alike import unlike
+from ratd.base.errors import InputError
 from ratd.experiments.collision import document_plan as page
 from ratd.experiments.collision.claims import claims
 from ratd.experiments.collision.document import (
@@ -22,6 +23,7 @@ from ratd.experiments.collision.document import (
     _exponents,
     _on_all_three,
     _same_collisions,
+    document,
     values,
 )
 from ratd.experiments.collision.document_samples import (
@@ -39,6 +41,7 @@ from ratd.experiments.collision.tables import findings
 from ratd.pictures.style import save
 from ratd.pipeline import io
 from ratd.pipeline.documents import fill
+from ratd.pipeline.kinds import as_dataset
 from tiny_pipeline import ROOT
 
 DOCS = ROOT / "docs"
@@ -86,6 +89,24 @@ def test_the_document_is_its_template_filled(tables):
     for name in PAGES:
         wanted = fill((DOCS / "templates" / name).read_text(encoding="utf-8"), found)
         assert (DOCS / name).read_text(encoding="utf-8") == wanted, "snakemake --cores 1 collision_document"
+
+
+def test_a_document_whose_sentences_no_longer_hold_is_not_written(tables, tmp_path):
+    files = {f"{name}_template": tmp_path / f"{name}.md" for name in ("document", "appendix")}
+    for path in files.values():
+        path.write_text("{{collisions}}", encoding="utf-8")
+    for name in ("table", "thresholds", "likeness"):
+        files[name] = tmp_path / f"{name}.nc"
+        io.write(files[name], as_dataset(getattr(tables, name)), f"collision_{name}")
+    assert document(files, {}, None)["document"] == values(*vars(tables).values())["collisions"]
+    known = claims(tables.table, tables.thresholds, tables.likeness)
+    open_ended = tables.table.assign(balance=0.5)
+    wrong = [claim for claim, holds in claims(open_ended, tables.thresholds, tables.likeness).items() if not holds]
+    assert 0 < len(wrong) < len(known)
+    io.write(files["table"], as_dataset(open_ended), "collision_table")
+    with pytest.raises(InputError, match="says what the data no longer do") as refused:
+        document(files, {}, None)
+    assert all(claim in str(refused.value) for claim in wrong)
 
 
 def test_pictures_of_the_document_are_there():

@@ -1,6 +1,6 @@
 """The claims of docs/collision.md: what its sentences say and further collisions may overturn.
 
-A test fails then, and somebody rereads the sentence.
+The document is not written then, and a test fails, until somebody has read the sentence again.
 """
 
 import itertools

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.stats import ttest_ind
 
 from ratd.aggregates.mrn import SMALLEST, moment_of_length
+from ratd.base.errors import InputError
 from ratd.base.materials import MATERIALS
 from ratd.base.measured import quotient
 from ratd.base.units import NM
@@ -406,11 +407,14 @@ def tables_of(files):
 
 
 def document(files, settings, say):
-    """The document of a job of the pipeline and its appendix: their templates, filled."""
+    """The document of a job of the pipeline and its appendix: their templates, filled, if all `claims` hold."""
     tables = tables_of(files)
     wrong = [claim for claim, holds in claims(*tables).items() if not holds]
-    for claim in wrong:
-        say(f"no longer so, reread the document: {claim}")
+    if wrong:
+        raise InputError(
+            f"docs/collision.md says what the data no longer do: {'; '.join(wrong)}; read the sentences around these "
+            "in its template and that of the appendix again, and mend them and ratd.experiments.collision.claims"
+        )
     found = values(*tables)
     templates = {name: Path(files[f"{name}_template"]) for name in ("document", "appendix")}
     return {name: fill(path.read_text(encoding="utf-8"), found, str(path)) for name, path in templates.items()}
