@@ -110,10 +110,14 @@ if workflow.is_main_process and not {"--forceall", "-F"} & set(sys.argv):
     checked(unrecorded.check, workflow.rules, config["results"], forced)
 
 
-# What is finished needs no pieces any more: a forced rerun is to compute it anew.
+# What is finished needs no pieces any more: a forced rerun is to compute it anew. The clusters of the document on
+# collisions are in a folder of their own.
+FOLDERS = config["results"], Path(page.SAMPLES).parent
+
+
 onsuccess:
-    tidy(config["results"])
+    tidy(*FOLDERS)
 
 
 onerror:
-    tidy(config["results"])
+    tidy(*FOLDERS)

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 import yaml
 
+from ratd.experiments.collision.document_plan import SAMPLES
 from ratd.experiments.collision.plan import load
 from ratd.experiments.collision.run import at_rest
 from ratd.experiments.collision.stages import built, collided
 from ratd.pipeline import blocks, io
+from ratd.pipeline.partial import partial_folder
 from tiny_pipeline import ROOT, Pipeline
 
 CELL = "results/tiny/collision/runs/velocity/pair/sample_1/20mps_b0.nc"
@@ -62,6 +64,16 @@ def test_a_wrong_config_ends_with_one_sentence(tmp_path, change, said):
     done = pipeline(tmp_path, change).run("collision")
     assert done.returncode != 0 and not (tmp_path / "results").exists()
     assert [line for line in done.stdout.splitlines() if line][-1].startswith(f"config: {said}")
+
+
+def test_pieces_of_finished_files_go_from_the_folder_of_the_document_too(tmp_path):
+    made = pipeline(tmp_path, OWN)
+    pieces = partial_folder(tmp_path / SAMPLES)
+    pieces.mkdir(parents=True)
+    for path in (tmp_path / SAMPLES, pieces / "lock"):
+        path.write_text("")
+    done = made.run("results/tiny/config.yaml")
+    assert done.returncode == 0 and not pieces.exists(), done.stdout
 
 
 def test_one_cell_through_the_pipeline(tmp_path):

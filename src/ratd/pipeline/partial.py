@@ -186,15 +186,15 @@ def _is_own(folder):
     return "lock" in names and all(re.fullmatch(_OWN_NAMES, name) for name in names)
 
 
-def tidy(results):
+def tidy(*results):
     """Remove the folders of partial results whose files are finished, and that no process is at work in.
 
     Parameters
     ----------
-    results : path-like
-        Folder of all results.
+    *results : path-like
+        Folders of results.
     """
-    for folder in sorted(Path(results).rglob("*.nc.partial")):
+    for folder in sorted(folder for path in results for folder in Path(path).rglob("*.nc.partial")):
         if not folder.with_suffix("").is_file() or not _is_own(folder):
             continue
         with open(folder / "lock", "a") as handle, suppress(BlockingIOError):
