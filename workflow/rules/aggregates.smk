@@ -1,4 +1,6 @@
 # Aggregates: one job a block of seeds of one material, type and size.
+from ratd.experiments.spin_up.plan import GRAINS
+
 NAMES = {
     "drive": PLAN.pattern("drives"),
     "material": PLAN.pattern("materials"),
@@ -6,7 +8,6 @@ NAMES = {
     "size": PLAN.pattern("sizes"),
     "seeds": PLAN.pattern("blocks"),
 }
-GRAINS = "<results>/grains/{material}/{type}/{size}nm/seeds_{seeds}.nc"
 
 
 rule grow:

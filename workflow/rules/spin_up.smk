@@ -1,5 +1,6 @@
 # Spin-up: runs, marks of disruption, the ensemble with its fit, and the studies beside it.
-RUNS = "<results>/spinup/{drive}/{material}/{type}/{size}nm/seeds_{seeds}.nc"
+from ratd.experiments.spin_up.plan import RUNS
+
 MARKS = "<results>/disruption/{drive}/{material}/{type}/{size}nm.nc"
 TABLE_3 = "<results>/ensemble/{drive}/table3.csv"
 

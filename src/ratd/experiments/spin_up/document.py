@@ -43,7 +43,7 @@ from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import spun_up_fragments
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import MARK, disruption
-from ratd.experiments.spin_up.plan import load
+from ratd.experiments.spin_up.plan import RUNS, load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
 from ratd.experiments.spin_up.shapes import read_shapes
@@ -81,7 +81,7 @@ STUDY = "config/figure9_{}.yaml"
 """Materials beside that of figure 9 for which its constants were varied as well, and their config."""
 BOTH_DRIVES = "config/studies/spun_up.yaml"
 """Config of the ensemble with both drives; its results are in the folder spun_up."""
-RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
+SHOWN_RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
 TABLES = {"parameters": "parameters/prescribed.nc", "formulae": "formulae/table.nc"}
 """Kind of file, and name beside the document -> where the pipeline has it."""
 
@@ -155,7 +155,7 @@ def collect(results, data=DATA):
         _copy(own, data / f"parameters_{material}.nc", "parameters", f" --configfile {STUDY.format(material)}")
     for material in plan.config["materials"]:
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
-    path = f"{results}/spinup/{{drive}}/{{material}}/{{type}}/{{size}}nm/seeds_{{seeds}}.nc"
+    path = RUNS.replace("<results>", str(results))
     _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
     _copy(results / "calibration/fit.nc", data / "calibration.nc", "calibration")
     (own,) = load(*CONFIGS, BOTH_DRIVES).figure4_files(path, PRINTED)
@@ -199,7 +199,7 @@ def read_data(data=DATA):
         files=files,
         fragments={drive: spun_up_fragments(files[drive]) for drive in files},
         firm=io.read(data / "firm_bounds.nc", "firm_bounds").to_dataframe(),
-        runs={name: read_runs(data / f"{name}.nc") for name in RUNS},
+        runs={name: read_runs(data / f"{name}.nc") for name in SHOWN_RUNS},
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
         others={name: io.read(data / f"parameters_{name}.nc", "parameters").to_dataframe() for name in OTHERS},

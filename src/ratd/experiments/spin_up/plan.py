@@ -6,7 +6,7 @@ from ratd.experiments.spin_up.seeds import cell_of, size_label
 from ratd.experiments.spin_up.settings import Settings
 from ratd.pipeline import config as configs
 
-__all__ = ["COMMON_FIGURES", "FIGURES", "TITLES", "Plan", "check", "load"]
+__all__ = ["COMMON_FIGURES", "FIGURES", "GRAINS", "RUNS", "TITLES", "Plan", "check", "load"]
 
 FIGURES = ("figure2", "figure4", "figure5", "figure6", "figure7", "figure8", "figure9")
 """Figures that are drawn for each drive."""
