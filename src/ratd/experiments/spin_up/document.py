@@ -157,6 +157,7 @@ def collect(results, data=DATA):
         _copy(results / f"pairs/{material}.nc", data / f"pairs/{material}.nc", "pairs")
     path = RUNS.replace("<results>", str(results))
     _copy(Path(plan.figure4_files(path, DRIVEN)[0]), data / f"figure4/{DRIVEN}.nc", "spinup")
+    # drawn from by no code: docs/model/drives.md sends readers to it
     _copy(results / "calibration/fit.nc", data / "calibration.nc", "calibration")
     (own,) = load(*CONFIGS, BOTH_DRIVES).figure4_files(path, PRINTED)
     own = results.parent / "spun_up" / Path(own).relative_to(results)
