@@ -27,7 +27,11 @@ from ratd.experiments.spin_up.findings.fragments import of_all_that_left, of_sha
 from ratd.experiments.spin_up.findings.law import of_exponents_apart
 from ratd.experiments.spin_up.findings.radiation import NONE, of_radiation
 from ratd.experiments.spin_up.findings.shapes import of_stretch
+from ratd.experiments.spin_up.plan import GRAINS, load
 from ratd.pictures.style import save
+from ratd.pipeline import blocks, io
+from ratd.pipeline.kinds import as_dataset
+from ratd.pipeline.places import seeds_of
 
 ROOT = Path(__file__).parents[3]
 TYPES = ("BA", "BAM1", "BAM2")
@@ -60,6 +64,29 @@ def test_a_figure_whose_points_moved_is_noticed(tmp_path):
 def test_collect_names_what_is_missing(tmp_path):
     with pytest.raises(FileError, match=r"parameters/prescribed.nc: is missing; `snakemake --cores 2"):
         document.collect(tmp_path, tmp_path / "data")
+
+
+def test_bounds_and_grains_of_figure_1_are_collected_from_where_the_pipeline_has_them(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    plan, results, committed = load(*document.CONFIGS), tmp_path / "results", ROOT / document.DATA
+    bounds = io.read(committed / "firm_bounds.nc", "firm_bounds")
+    for (material, kind), rows in bounds.to_dataframe().groupby(["material", "type"]):
+        io.write(results / f"firm_bounds/{material}/{kind}.nc", as_dataset(rows.reset_index(drop=True)), "firm_bounds")
+    shown = {kind: io.read(committed / f"figure1/{kind}.nc", "grains") for kind in TYPES}
+    for path in plan.figure1_files(GRAINS.replace("<results>", str(results))):
+        file = shown[Path(path).parts[-3]]
+        (row,) = [row for row in blocks.rows(file, "grains") if f"{row['a_eff'].item() * 1e9:.0f}nm" in path]
+        rows = [row.assign(seed=seed) for seed in seeds_of(Path(path).stem.removeprefix("seeds_"))]
+        made_with = {"code_hash": "1", "versions": "2"}
+        io.write(path, blocks.block(rows, "grains", blocks.material_of(file), made_with), "grains")
+
+    document._collect_firm_bounds(results, tmp_path, plan)
+    document._collect_figure1(results, tmp_path, plan)
+    xr.testing.assert_equal(io.read(tmp_path / "firm_bounds.nc", "firm_bounds"), bounds)
+    for kind, file in shown.items():
+        found = io.read(tmp_path / f"figure1/{kind}.nc", "grains")
+        xr.testing.assert_equal(found, file)
+        assert (found.attrs["code_hash"], found.attrs["versions"]) == ("1", "2")
 
 
 def test_verdicts_need_two_standard_errors():

@@ -6,11 +6,13 @@ python -m ratd.experiments.spin_up.document redraw             figures and text,
 The ensemble itself grows in docs/reproduction/data/spun_up, see `ratd.experiments.spin_up.study`.
 """
 
+import itertools
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
+import xarray as xr
 
 from ratd.aggregates.files import read_grains
 from ratd.base.errors import FileError
@@ -43,7 +45,7 @@ from ratd.experiments.spin_up.figures.radiation import radiation
 from ratd.experiments.spin_up.fragmentation import spun_up_fragments
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.marks import MARK, disruption
-from ratd.experiments.spin_up.plan import RUNS, load
+from ratd.experiments.spin_up.plan import GRAINS, RUNS, load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
 from ratd.experiments.spin_up.shapes import read_shapes
@@ -51,6 +53,7 @@ from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
+from ratd.pipeline.provenance import together
 
 __all__ = ["DATA", "Data", "collect", "findings", "main", "read_data", "redraw"]
 
@@ -171,6 +174,30 @@ def collect(results, data=DATA):
     looks = sorted(set(nearest_snapshots(run, disruption(run)["omega_disr"].item())))
     block = blocks.block([run_row(run.isel(snapshot=looks))], "spinup", blocks.material_of(file), kept)
     io.write(data / f"figure5/{DRIVEN}.nc", block, "spinup")
+    # of all grains as grown, which take longest
+    _copy(results / "ensemble/grown.nc", data / "grown.nc", "table")
+    _collect_firm_bounds(results, data, plan)
+    _collect_figure1(results, data, plan)
+
+
+def _collect_firm_bounds(results, data, plan):
+    """The bounds of all materials and types in one table."""
+    pairs = itertools.product(plan.config["materials"], plan.config["types"])
+    parts = [_read(results / f"firm_bounds/{material}/{kind}.nc", "firm_bounds") for material, kind in pairs]
+    whole = xr.concat(parts, "entry", combine_attrs="drop")
+    io.write(data / "firm_bounds.nc", whole.assign_attrs(together(part.attrs for part in parts)), "firm_bounds")
+
+
+def _collect_figure1(results, data, plan):
+    """The grains that figure 1 shows, a file a type."""
+    seed = plan.config["figures"]["figure1"]["seed"]
+    files = [_read(path, "grains") for path in plan.figure1_files(GRAINS.replace("<results>", str(results)))]
+    for kind in plan.config["types"]:
+        own = [file for file in files if file.attrs["type"] == kind]
+        rows = [row for file in own for row in blocks.rows(file, "grains") if row["seed"].item() == seed]
+        made_with = together(file.attrs for file in own)
+        block = blocks.block(rows, "grains", blocks.material_of(own[0]), made_with)
+        io.write(data / f"figure1/{kind}.nc", block, "grains")
 
 
 def _read(path, kind, how=""):
