@@ -29,4 +29,10 @@ def test_a_collision_that_is_there_twice_is_refused(committed):
 
 def test_the_command(tmp_path, capsys):
     assert main([]) == 2 and "FOLDER" in capsys.readouterr().out
-    assert main([str(tmp_path)]) == 1 and "has no collisions" in capsys.readouterr().out
+    assert main([str(tmp_path)]) == 1 and "has no collisions" in capsys.readouterr().err
+    damaged = tmp_path / "collision" / "runs" / "velocity" / "570nm" / "sample_1" / "15mps_b0.nc"
+    damaged.parent.mkdir(parents=True)
+    damaged.write_text("")
+    assert main([str(tmp_path)]) == 1
+    said = capsys.readouterr()
+    assert f"{damaged}: is damaged" in said.err and said.out == ""

@@ -38,9 +38,11 @@ def test_what_is_the_same_and_what_is_not(committed):
 def test_the_command(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
     assert again.main([]) == 2 and "FOLDER" in capsys.readouterr().out
-    assert again.main([str(tmp_path)]) == 1 and "has no sets" in capsys.readouterr().out
+    assert again.main([str(tmp_path)]) == 1 and "has no sets" in capsys.readouterr().err
     (tmp_path / "compression").mkdir()
     shutil.copy(SETS / "rate_1e-5.nc", tmp_path / "compression")
     assert again.main([str(tmp_path)]) == 0 and "5 clusters in both, 5 of them" in capsys.readouterr().out
     shutil.copy(SETS / "rate_1e-5.nc", tmp_path / "compression" / "rate_1e-6.nc")
     assert again.main([str(tmp_path)]) == 1 and "differs by up to" in capsys.readouterr().out
+    (tmp_path / "compression" / "rate_1e-6.nc").write_text("")
+    assert again.main([str(tmp_path)]) == 1 and "rate_1e-6.nc: is damaged" in capsys.readouterr().err

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 from ratd.experiments.collision.document_plan import run_files
 from ratd.experiments.collision.tables import collision_table, read_collisions
 
@@ -53,8 +53,8 @@ def main(words=None):
             raise InputError(f"{words[0]}: has no collisions; they are made by the target collision of snakemake.")
         again = collision_table(read_collisions(paths))
         both = beside(again, collision_table(read_collisions(run_files())))
-    except InputError as error:
-        print(error)
+    except (InputError, FileError) as error:
+        print(error, file=sys.stderr)
         return 1
     same = int((both["difference"] == 0.0).sum())
     print(f"{len(both)} of {len(again)} collisions are among the committed ones too, {same} to the last bit.")

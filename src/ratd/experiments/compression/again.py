@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ratd.base.errors import InputError
+from ratd.base.errors import FileError, InputError
 from ratd.base.words import plural
 from ratd.experiments.compression.document import DATA
 from ratd.experiments.compression.tables import shared_bins
@@ -89,8 +89,8 @@ def main(words=None):
             for seed, difference in found.items():
                 if difference != 0.0:
                     print(f"{path.stem}: seed {seed} differs by up to {difference:.2g} of the greatest value")
-    except InputError as error:
-        print(error)
+    except (InputError, FileError) as error:
+        print(error, file=sys.stderr)
         return 1
     return int(not (all_same and any_found))
 
