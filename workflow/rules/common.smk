@@ -13,6 +13,7 @@ from ratd.experiments.spin_up.plan import check as spin_up_plan
 from ratd.pipeline import first_error, jobs, unrecorded
 from ratd.pipeline.config import read_yaml, together
 from ratd.pipeline.partial import tidy
+from ratd.pipeline.places import any_of
 from ratd.pipeline.report import figure_labels
 from ratd.validation.plan import Checks
 

@@ -1,6 +1,5 @@
 # Static compression: clusters, runs, tables of runs that differ in their seeds alone, pulls, figures.
 from ratd.experiments.compression import plan as compression
-from ratd.pipeline.places import any_of
 
 COMPRESSION_NAMES = {
     "set": any_of(COMPRESSION.config["sets"]),

@@ -332,7 +332,7 @@ rule formulae:
     benchmark:
         "<results>/benchmarks/formulae/{formula}.tsv"
     wildcard_constraints:
-        formula="|".join(PLAN.formulae),
+        formula=any_of(PLAN.formulae),
     conda:
         "../envs/ratd.yaml"
     resources:

@@ -15,7 +15,7 @@ for check in CHECKS.names:
         benchmark:
             f"{CHECKS.results}/{{extent}}/benchmarks/{check}/{{piece}}.tsv"
         wildcard_constraints:
-            extent="|".join(CHECKS.pieces),
+            extent=any_of(CHECKS.pieces),
         conda:
             "../envs/ratd.yaml"
         resources:
@@ -39,8 +39,8 @@ rule check_table:
     benchmark:
         f"{CHECKS.results}/{{extent}}/benchmarks/{{check}}.tsv"
     wildcard_constraints:
-        extent="|".join(CHECKS.pieces),
-        check="|".join(CHECKS.names),
+        extent=any_of(CHECKS.pieces),
+        check=any_of(CHECKS.names),
     conda:
         "../envs/ratd.yaml"
     params:
