@@ -110,6 +110,10 @@ def test_lammps_is_reached_from_one_start_or_from_most():
         own = {name: found[f"lammps_single.{slot} {name}"] for name in ("known", "reached", "near", "least", "most")}
         assert own == {"known": 4, "reached": 3, "near": 2, "least": 0.75, "most": 1.2}
         assert found[f"lammps_single.{slot} spread"] == pytest.approx(1.2 / 0.7)
+        # one has LAMMPS above all of its starts; a start that is as LAMMPS is not below or above
+        assert [found[f"lammps_single.{slot} {name}"] for name in ("below", "above")] == [0, 1]
+        mean = np.exp(np.mean(np.log([0.9, 1.2, 0.99, 0.75])))
+        assert found[f"lammps_single.{slot} mean"].value == pytest.approx(mean)
     assert found["lammps_single.verdict"] == "missed"
     # what is told of the limits of ratd alone does not decide
     other = table[~table["seed"].isin([1, 4]) | (table["limits"] == "ratd")]

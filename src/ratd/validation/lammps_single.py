@@ -28,7 +28,7 @@ from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
 from ratd.experiments.relax import relax
 from ratd.experiments.spin_up.cut_bound import cut_bound
-from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS
+from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS, beside_all_starts
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
 from ratd.geometry.box import open_space
@@ -270,6 +270,7 @@ def findings(table):
         grains that have one in both codes; ``near``, those of them in which LAMMPS is within `NEAR_LAMMPS` of the
         median of the starts; ``reached``, within that of one of them;
         ``least`` and ``most``, LAMMPS over the median; ``spread``, the greatest ratio of two starts of one grain;
+        ``mean``, ``below`` and ``above``, see `ratd.experiments.spin_up.findings.beside.beside_all_starts`;
         ``same``, grains of which all starts have the same mark.
         ``starts`` is their number; ``verdict``, whether all are near at both marks with the limits of LAMMPS.
     """
@@ -280,6 +281,7 @@ def findings(table):
         for name, column in (("near", "median"), ("reached", "nearest")):
             values[f"{slot} {name}"] = int(((part[column] - 1.0).abs() <= NEAR_LAMMPS).sum())
         values[slot] = median(part["median"])
+        values |= {f"{slot} {name}": found for name, found in beside_all_starts(part).items()}
         values[f"{slot} least"], values[f"{slot} most"] = part["median"].min(), part["median"].max()
         values[f"{slot} same"] = int(np.isclose(part["most"], part["least"], atol=0.0).sum())
         values[f"{slot} spread"] = (part["most"] / part["least"]).max()

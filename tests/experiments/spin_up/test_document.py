@@ -193,11 +193,15 @@ def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
     ways = ways.assign(material="q-S", seed=0, n_monomers=15)
     medians = {"ratd": (0.9, 1.2, np.nan), "limits of LAMMPS": (1.0, 1.1, 0.86)}
     starts = [
-        {"limits": law, "mark": "first loss", "median": median} for law, found in medians.items() for median in found
+        {"limits": law, "mark": "first loss", "median": median, "least": 0.95 * median, "most": 1.1 * median}
+        for law, found in medians.items()
+        for median in found
     ]
     found = of_lammps(ways, ways.assign(way="default"), pd.DataFrame(starts))
     assert found["lammps.starts ratd first loss grains"] == 2 and found["lammps.starts ratd first loss near"] == 1
     assert found["lammps.starts limits of LAMMPS first loss near"] == 3
+    # of 1.0, 1.1 and 0.86 LAMMPS is above all starts in the second and below all in the third
+    assert [found[f"lammps.starts limits of LAMMPS first loss {name}"] for name in ("below", "above")] == [1, 1]
     assert found["lammps.default first loss range"] == "1.10 to 1.10"
     assert found["lammps.below 100"] == 1
 
@@ -206,7 +210,7 @@ def test_the_largest_grains_beside_lammps_are_told_one_by_one():
     rows = [("BA", 1e-7, 0.9), ("BA", 3e-7, 0.85), ("BAM1", 3e-7, 1.2), ("BAM2", 3e-7, np.nan)]
     default = pd.DataFrame(rows, columns=["type", "a_eff", "ratio"]).assign(way="default", mark="25 % of the mass")
     default = default.assign(material="q-S", seed=0, n_monomers=[15, 99, 100, 300])
-    starts = pd.DataFrame({"limits": ["ratd"], "mark": ["first loss"], "median": [1.0]})
+    starts = pd.DataFrame({"limits": ["ratd"], "mark": ["first loss"], "median": [1.0], "least": [1.0], "most": [1.0]})
     found = of_lammps(default.assign(way="driven"), default, starts)
     assert {name: found[name] for name in found if "largest " in name and "nm" not in name and "%" not in name} == {
         "lammps.largest BA": 0.85, "lammps.largest BAM1": 1.2
@@ -292,7 +296,7 @@ def test_large_grains_that_are_drawn_out_have_moved_their_monomers():
 
     found = of_stretch("d", [file("BA", 3.0), file("BAM1", 1.0), file("BAM2", 1.0)])
     assert found["d.stretch BA"].value == pytest.approx(3.0) and found["d.stretch BAM2"].value == pytest.approx(1.0)
-    assert (found["d.holds stretch BA"], found["d.holds stretch BAM"]) == ("yes", "no")
+    assert (found["d.holds stretch BA"], found["d.holds stretch BAM2"]) == ("yes", "no")
 
 
 def test_three_exponents_fit_what_one_does_not(data):

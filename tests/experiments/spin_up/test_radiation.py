@@ -279,6 +279,20 @@ def test_surviving_grains_of_both_laws(table):
     pd.testing.assert_frame_equal(found, surviving(table, table, [1.0, 100.0, 1e4], draws=100))
 
 
+def test_both_laws_go_as_the_root_of_the_surface_energy(table):
+    """Four times the surface energy is twice the omega, of the grains here and of Eq. 33."""
+    settings = {"draws": 0, "surface_energy": 4.0}
+    ours, printed = (
+        surviving(table, table, [1e4], **settings).query(f"law == '{law}'")["a_disr"] for law in ("ours", "printed")
+    )
+    by_hand = surviving(table.assign(omega_mass_75=2.0 * table["omega_mass_75"]), table, [1e4], draws=0)
+    assert ours.notna().all() and ours.to_numpy() == pytest.approx(by_hand.query("law == 'ours'")["a_disr"].to_numpy())
+    law = printed_law(table, get_material("q-S"), "BAM2")
+    (smallest,), _ = destroyed_sizes(lambda size: 2.0 * law(size), [1e4], DIFFUSE, None, infrared_of("q-S"), False)
+    row = surviving(table, table, [1e4], **settings).query("material == 'q-S' and type == 'BAM2' and law == 'printed'")
+    assert row["a_disr"].item() == pytest.approx(smallest) and printed.notna().any()
+
+
 def test_error_follows_from_those_of_the_means():
     """Without infrared light and with two sizes ln a_disr goes as the line through both means, over 0.7 + p."""
     made = make_table(materials=["q-S"], types=["BAM2"], seeds=20, scatter=0.3)
@@ -358,6 +372,8 @@ def test_what_moves_the_size_for_one_material_and_strength(table):
     # what holds more survives at a greater size, light from one side turns faster, graphite is braked more
     third, thrice = (values[f"radiation.q-S BAM2 10000 ours {name}"].value for name in ("a third", "thrice"))
     assert thrice < size[""] < third
+    half, five = (values[f"radiation.q-S BAM2 10000 ours {name} gamma"].value for name in ("half", "five"))
+    assert half < size[""] < five
     assert size[" one star"] < size[" first"] < size[""] < min(size[" DMT"], size[" graphite"])
     assert values["radiation.q-S BAM2 10000 printed first"].value == values["radiation.q-S BAM2 10000 printed"].value
     assert "radiation.a-C BAM2 10000 ours DMT" not in values

@@ -7,10 +7,12 @@ The ensemble itself grows in docs/reproduction/data/spun_up, see `ratd.experimen
 """
 
 import itertools
+import math
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -24,6 +26,7 @@ from ratd.experiments.spin_up.findings.literature import of_literature
 from ratd.experiments.spin_up.findings.mark_rules import of_mark_rules
 from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
+from ratd.experiments.spin_up.findings.scheme import of_scheme
 from ratd.experiments.spin_up.findings.shapes import of_shapes, of_stretch
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
 from ratd.experiments.spin_up.pulled import read_pulled
@@ -79,9 +82,17 @@ LAMMPS = {
 """Spin-up of ratd beside LAMMPS -> table below docs, written with docs/validation.md."""
 MARK_RULES = "validation/data/mark_rules.nc"
 """omega_disr by other rules, below docs, taken there by ``python -m ratd.validation.document collect``."""
+SCHEME = "quasi_static/data/quasi_static.csv"
+"""Grains spun up with one thing changed, below docs, the data of docs/quasi_static.md."""
 OTHERS = ("q-S", "co-S")
 STUDY = "config/figure9_{}.yaml"
 """Materials beside that of figure 9 for which its constants were varied as well, and their config."""
+MOVES = (
+    "d.disr over quarter BA large", "equal_30nm.BA 300 nm omega_mass_75", "co-S ways.BA xi quarter",
+    "dmt.BA omega_mass_75",
+)  # fmt: skip
+"""Slots of factors by which other choices would move omega of BA of 300 nm upward; ``d.together`` is the product, with
+that of the mean radius in Eq. 33."""
 BOTH_DRIVES = "config/studies/spun_up.yaml"
 """Config of the ensemble with both drives; its results are in the folder spun_up."""
 SHOWN_RUNS = (f"figure4/{DRIVEN}", f"figure4/{PRINTED}", f"figure5/{DRIVEN}")
@@ -119,6 +130,8 @@ class Data(NamedTuple):
         Thresholds of both codes, from the validation, see `LAMMPS`.
     mark_rules : pandas.DataFrame or None
         omega_disr by other rules, from the validation, see `MARK_RULES`.
+    scheme : pandas.DataFrame
+        See `SCHEME`.
     studies : dict
         See `ratd.experiments.spin_up.findings.studies.studies`.
     """
@@ -138,6 +151,7 @@ class Data(NamedTuple):
     shapes: pd.DataFrame
     lammps: dict
     mark_rules: pd.DataFrame | None
+    scheme: pd.DataFrame
     studies: dict
 
 
@@ -236,6 +250,7 @@ def read_data(data=DATA):
         studies=studies(data, files[DRIVEN], printed),
         lammps={name: pd.read_csv(data.parents[1] / path) for name, path in LAMMPS.items()},
         mark_rules=io.read(rules, "validation_mark_rules").to_dataframe() if rules.is_file() else None,
+        scheme=pd.read_csv(data.parents[1] / SCHEME),
         pairs=[io.read(path, "pairs").to_dataframe() for path in sorted((data / "pairs").glob("*.nc"))],
     )
 
@@ -271,18 +286,21 @@ def findings(data, fits):
     values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)
     for letter, drive in (("d", DRIVEN), ("p", PRINTED)):
         values |= of_stretch(letter, data.files[drive])
+        values[f"{letter}.states"] = len(set(np.concatenate([file["source"].values for file in data.files[drive]])))
     printed = load(*CONFIGS).config["literal"]
     pace = printed["angular_acceleration"], printed["timestep_factor"]
     values |= {"p.acceleration": pace[0], "p.step": pace[1]}
     values |= beside.of_printed_pairs(*pace)
     values |= beside.of_printed_pace(data.driven, data.printed, *pace)
-    values |= beside.of_lammps(**data.lammps)
+    values |= beside.of_lammps(**data.lammps) | of_scheme(data.scheme)
     values |= of_studies(data.studies) | of_literature(data.driven, data.grown)
     values |= of_exponents(data.fragments[DRIVEN])
     values |= of_radiation(data.driven, data.grown, mark=MARK)
     values |= beside.of_heat(values["radiation.q-S BA 100 ours"].value * NM)
     if data.mark_rules is not None:
         values |= of_mark_rules(data.mark_rules)
+    values["d.together"] = values["g.radius factor"] * math.prod(values[name].value for name in MOVES)
+    values["d.BA 300 gap"] = 1.0 / values["d.BA 300"].value
     values["cells.quarter"] = ensemble.cell_medians(data.driven)
     values["cells.disr"] = ensemble.cell_medians(data.driven, "omega_disr")
     values["cells.printed"] = ensemble.cell_medians(data.printed, "omega_disr")

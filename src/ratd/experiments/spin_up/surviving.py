@@ -161,6 +161,7 @@ def surviving(
     porous=False,
     wide=False,
     coefficient=None,
+    surface_energy=1.0,
     draws=400,
     seed=0,
 ):
@@ -184,6 +185,8 @@ def surviving(
         Whether light finds it as wide as the gas then does (`radiation.omega_rat`); else the torque is that of a_eff.
     coefficient : float, optional
         See `radiation.infrared_damping`; that of each material when not given, `radiation.infrared_of`.
+    surface_energy : float
+        Over that of the material: both laws go as its root.
     draws, seed : int
         Of the laws that are drawn with the standard errors of the means of `measured_law`.
 
@@ -212,10 +215,16 @@ def surviving(
             candidates = {"ours": measured_law(table, mark, name, kind, draws, rng)}
             if (name, kind) in TABLE_3:
                 candidates["printed"] = printed_law(grown, material, kind), None
-            for which, (omega, spread) in candidates.items():
+            for which, laws in candidates.items():
+                omega, spread = (law and _times(law, surface_energy**0.5) for law in laws)
                 found = _sizes(omega, spread, strengths, around, ratio, infrared, wide)
                 rows += [{"material": name, "type": kind, "law": which} | own for own in found]
     return pd.DataFrame(rows)
+
+
+def _times(law, factor):
+    """A law of sizes, times a factor."""
+    return lambda size: factor * law(size)
 
 
 def _sizes(omega, spread, strengths, *given):

@@ -24,8 +24,8 @@ from ratd.laws.johnson_kendall_roberts import dissipation_time
 from ratd.base.measured import Measured, geometric_mean, median
 
 __all__ = [
-    "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs", "of_printed_twist",
-    "of_printed_pace", "of_printed_pairs", "of_ways",
+    "beside_all_starts", "composition_tables", "of_formulae", "of_heat", "of_lammps", "of_overlap", "of_pairs",
+    "of_printed_twist", "of_printed_pace", "of_printed_pairs", "of_ways",
 ]  # fmt: skip
 
 ROLLING = 3.2 * NM
@@ -36,6 +36,8 @@ PAIR_SHARE = 0.8 / 2.8
 """Share of their own moments of inertia, 2/5 m a^2 each, in that of two touching spheres, m a^2 each besides."""
 NEAR_LAMMPS = 0.15
 """Part by which omega of single grains in LAMMPS may be off; neighbouring ones that were tried differ by 4 %."""
+SAME = 0.005
+"""Part by which two omega differ at most that are the same: those that were tried are 2 % apart at least."""
 
 
 def of_ways(table):
@@ -214,9 +216,11 @@ def of_lammps(driven, default, starts):
     for kind, part in quarter[np.isclose(quarter["a_eff"], quarter["a_eff"].max(), atol=0.0)].groupby("type"):
         values[f"lammps.largest {kind}"] = float(part["ratio"].median())
     for (limits, mark), part in starts.dropna(subset="median").groupby(["limits", "mark"]):
+        start = f"lammps.starts {limits} {mark}"
         values |= {
-            f"lammps.starts {limits} {mark} grains": len(part),
-            f"lammps.starts {limits} {mark} near": int(((part["median"] - 1.0).abs() <= NEAR_LAMMPS).sum()),
+            f"{start} grains": len(part),
+            f"{start} near": int(((part["median"] - 1.0).abs() <= NEAR_LAMMPS).sum()),
+            **{f"{start} {name}": found for name, found in beside_all_starts(part).items()},
         }
     for (way, mark), part in pd.concat([driven, default]).dropna(subset="ratio").groupby(["way", "mark"]):
         values |= {
@@ -228,6 +232,27 @@ def of_lammps(driven, default, starts):
         values |= {f"lammps.{way} {mark} {kind}": median(own["ratio"]) for kind, own in part.groupby("type")}
     monomers = default.groupby(["material", "type", "a_eff", "seed"])["n_monomers"].first()
     return values | {"lammps.below 100": int((monomers < 100).sum())}
+
+
+def beside_all_starts(table):
+    """Where LAMMPS lies beside all starts of a grain at once, as one more start would not often.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        LAMMPS over the ``least``, ``median`` and ``most`` of the starts of each grain.
+
+    Returns
+    -------
+    dict
+        ``mean``, the geometric mean of LAMMPS over the median of the starts; ``below`` and ``above``, grains in which
+        it is below or above all of them.
+    """
+    return {
+        "mean": geometric_mean(table["median"]),
+        "below": int((table["most"] < 1.0 - SAME).sum()),
+        "above": int((table["least"] > 1.0 + SAME).sum()),
+    }
 
 
 def of_overlap():

@@ -83,8 +83,11 @@ def _where(letter, table):
     """omega itself, and how it goes with type and size."""
     ratio = median(table["omega_disr"] / table["printed"], cell_of(table))
     low, high = (table["omega_disr"].min(), table["omega_disr"].max())
+    by_size = _by_type_and_size(table)
     values = {
         f"{letter}.disr over print": ratio,
+        f"{letter}.disr over print least": float(by_size.min()),
+        f"{letter}.disr over print most": float(by_size.max()),
         f"{letter}.holds level": is_within(ratio, 0.8, 1.25),
         f"{letter}.holds range": "yes" if 2.5e8 < low and high < 1e10 else "no",
         f"{letter}.in abstract": float(table["omega_disr"].between(*ABSTRACT).mean()),
@@ -114,6 +117,11 @@ def _where(letter, table):
     values[f"{letter}.BA first surely"] = int(sure.all(axis="columns").sum())
     values[f"{letter}.holds BA first"] = "yes" if first.all() else "open" if first.mean() > 0.9 else "no"
     return values
+
+
+def _by_type_and_size(table):
+    """omega_disr over the printed one, medians of the grains of each type and size."""
+    return (table["omega_disr"] / table["printed"]).groupby([table["type"], size_key(table["a_eff"])]).median()
 
 
 def _slope(x, y, part):

@@ -7,7 +7,6 @@ import numpy as np
 from ratd.base.materials import get_material
 from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import cell_of
 from ratd.experiments.spin_up.cross_validation import cross_validation
 from ratd.experiments.spin_up.eq33 import eq33
 from ratd.experiments.spin_up.findings.ensemble import MARKS
@@ -60,8 +59,8 @@ def of_curve(table, grown):
         values |= _farthest(table[table["type"] == kind], kind, row)
         left_out = table.loc[table["type"] == kind, MARK].isna().groupby(np.round(table["a_eff"] / NM)).mean()
         values[f"curve.{kind} left out"] = float(left_out.max())
-        middle = table[(table["type"] == kind) & np.isclose(table["a_eff"], SPLIT, atol=1e-12)].dropna(subset=MARK)
-        values[f"curve.{kind} at a_0"] = geometric_mean(middle[MARK] / size_law_unit(middle), cell_of(middle))
+        straight = size_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * SPLIT)], MARK).iloc[0]
+        values[f"curve.{kind} C from a_0"] = Measured(straight["C"], straight["C_error"])
         for least in FROM:
             part = curved_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * least)], MARK).iloc[0]
             values[f"curve.{kind} q from {least / NM:.0f}"] = Measured(part["q"], part["q_error"])

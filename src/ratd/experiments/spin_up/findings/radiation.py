@@ -23,6 +23,8 @@ SURROUNDINGS = {
     "denser": DIFFUSE._replace(hydrogen=10.0 * DIFFUSE.hydrogen),
 }
 """Name of a variant -> what surrounds the grain; the torque goes with the anisotropy."""
+SURFACE_ENERGIES = {"half gamma": 0.5, "five gamma": 5.0}
+"""Name of a variant -> surface energy over that of the material; five times that of q-S is that of ice."""
 DMT = math.sqrt(4.0 / 3.0)
 """omega that a pull-off force 4/3 as great would hold, over that of JKR; driven grains come to 1.11 to 1.15."""
 BILLION = (50, 100, 300)
@@ -71,7 +73,8 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
         with " range" the text of both drags. With "over" for "ours" ours over the printed one. "radiation.most error"
         is the greatest relative error of ours for the material of `shown`. For `shown` also, without errors, with
         " first" the first loss in place of the mark, with " DMT" omega `DMT` times as great; for its material, with a
-        name of `SURROUNDINGS`, and as "radiation.most around ours" the greatest factor by which one of them moves it;
+        name of `SURROUNDINGS` or `SURFACE_ENERGIES`, and as "radiation.most around ours" the greatest factor by which
+        one of the former moves it;
         ``radiation.SIZE billion`` and ``radiation.SIZE billion K`` of `_billion`.
     """
     values = _billion(shown[0])
@@ -89,6 +92,8 @@ def of_radiation(table, grown, strengths=(1.0, 1e2, 1e4), mark="omega_mass_75", 
     values |= _sizes(own.assign(**{mark: DMT * own[mark]}), grown, [strength], " DMT", mark=mark, **plain)
     for name, around in SURROUNDINGS.items():
         values |= _sizes(own, grown, strengths, f" {name}", mark=mark, around=around, **plain)
+    for name, factor in SURFACE_ENERGIES.items():
+        values |= _sizes(own, grown, strengths, f" {name}", mark=mark, surface_energy=factor, **plain)
     for law in ("ours", "printed"):
         every = [f"radiation.{material} {kind} {strength:g} {law}" for kind in TYPES]
         moved = [
