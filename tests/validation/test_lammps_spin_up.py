@@ -98,7 +98,11 @@ def test_a_killed_run_goes_on_after_its_last_hold(tmp_path, holds):
     with pytest.raises(KeyboardInterrupt):
         driven(partial(Killed, *make.args, **make.keywords), unit, 1.03, 0.02, 0.7, tmp_path / "run")
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"run.{holds}.restart", "run.npz"]
-    assert driven(make, unit, 1.03, 0.02, 0.7, tmp_path / "run") == whole
+    for other, step in ((partial(InLammps, *make.args, turning=True, classes=5), 1.03), (make, 1.02)):
+        with pytest.raises(ratd.InputError, match=r"run\.npz is of .*4 classes.*step=1.03.* does not go on with"):
+            driven(other, unit, step, 0.02, 0.7, tmp_path / "run")
+    # the start that was found then counts, though a later state of the code may have another
+    assert driven(make, 1.001 * unit, 1.03, 0.02, 0.7, tmp_path / "run") == whole
     assert not any(tmp_path.iterdir())
 
 

@@ -40,7 +40,7 @@ from ratd.laws.johnson_kendall_roberts import (
 from ratd.observables.pieces import heaviest_pieces
 from ratd.validation import peer_lammps
 from ratd.validation.energy_step import NO_ROLLING_LIMIT
-from ratd.validation.lammps_checkpoint import forget, keep, last_hold
+from ratd.validation.lammps_checkpoint import Drive, Holds, forget, keep, last_hold
 from ratd.validation.peer_lammps import Spheres, stable_step
 from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
 
@@ -103,6 +103,7 @@ class InRatd:
         self._omega = 0.0
         self._mass = monomer_rows(self._state)[:, MASS].sum()
         self.timestep = float(self._state.scalar[DT])
+        self.code = "ratd"
 
     def __enter__(self):
         return self
@@ -163,6 +164,8 @@ class InLammps:
         radius, self._mass = rows[:, RADIUS].copy(), rows[:, MASS].copy()
         self._turning, self._omega = turning, 0.0
         self.timestep = stable_step(radius, material, contact_pairs(state), float(state.scalar[DT]))
+        sorts = f"{classes} classes of radius" if classes else "radii of their own"
+        self.code = f"LAMMPS {peer_lammps.version()}, {sorts}, steps of {self.timestep:.4g} s"
         self._spheres = Spheres(rows[:, X : X + 3], radius, material, self.timestep, classes=classes, saved=saved)
 
     def __enter__(self):
@@ -278,10 +281,13 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
     path, a run that was killed goes on after its last hold (`ratd.validation.lammps_checkpoint`): `make` then takes the
     file of the spheres as ``saved``. The checkpoint goes when the run ends.
     """
-    start, rows, risen = first * unit, [], 0
-    before = last_hold(checkpoint)
+    start, risen, rows = Holds(first * unit, 0, [])
+    with make() as grain:
+        drive = Drive(grain.code, step, rotations)
+    before = last_hold(checkpoint, drive)
     if before is not None:
-        rows, risen, saved = before
+        # where the grain loses its first mass may have moved a little with the code
+        (start, risen, rows), saved = before
     with make() if before is None else make(saved=saved) as grain:
         for _ in range(risen):
             grain.turn(start / RISE)
@@ -291,7 +297,7 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
             grain.turn(start / RISE)
             hold(grain, start, rotations, torque=True)
             risen += 1
-            keep(checkpoint, grain, rows, risen)
+            keep(checkpoint, grain, drive, Holds(start, risen, rows))
         omega = rows[-1][0] if rows else start
         while omega < GREATEST_RATIO * unit:
             grain.turn((step - 1.0) * omega)
@@ -299,7 +305,7 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
             rows.append((omega, rotations, *hold(grain, omega, rotations, torque=True)))
             if rows[-1][-1] < MARKS["25 % of the mass"]:
                 break
-            keep(checkpoint, grain, rows, risen)
+            keep(checkpoint, grain, drive, Holds(start, risen, rows))
     forget(checkpoint)
     return rows
 

@@ -1,16 +1,53 @@
 """What a grain that LAMMPS drives had reached at its last hold, so that a killed run goes on from there.
 
-Beside each other stand the holds so far, PATH.npz, and the spheres, PATH.NUMBER.restart, which the holds name. What is
-not LAMMPS' own, and was finished before, is kept by `once`.
+Beside each other stand the holds so far, PATH.npz, and the spheres, PATH.NUMBER.restart, which the holds name. The
+holds say how they were made, and none that is made in another way goes on from there. What was finished before is kept
+by `once`.
 """
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from ratd.base.errors import InputError
 from ratd.pipeline.atomic import atomic
 
-__all__ = ["forget", "keep", "last_hold", "once"]
+__all__ = ["Drive", "Holds", "forget", "keep", "last_hold", "once"]
+
+
+class Drive(NamedTuple):
+    """How a grain is driven.
+
+    Attributes
+    ----------
+    code : str
+        What LAMMPS is made with.
+    step, rotations : float
+        See `ratd.validation.lammps.driven`.
+    """
+
+    code: str
+    step: float
+    rotations: float
+
+
+class Holds(NamedTuple):
+    """What was held so far.
+
+    Attributes
+    ----------
+    start : float
+        omega that the rise leads to [rad/s].
+    risen : int
+        Steps of the rise.
+    rows : list of tuple of float
+        Of `ratd.validation.lammps.driven`, behind the rise.
+    """
+
+    start: float
+    risen: int
+    rows: list
 
 
 def _files_of(checkpoint):
@@ -19,7 +56,7 @@ def _files_of(checkpoint):
     return [holds, *sorted(holds.parent.glob(f"{holds.stem}.*.restart"))]
 
 
-def keep(checkpoint, grain, rows, risen):
+def keep(checkpoint, grain, drive, held):
     """Write a checkpoint: first the spheres under a name of their own, then the holds, which name them.
 
     Parameters
@@ -27,31 +64,39 @@ def keep(checkpoint, grain, rows, risen):
     checkpoint : path-like or None
         None for no checkpoint.
     grain : ratd.validation.lammps.InLammps
-    rows : list of tuple of float
-        Holds so far, of `ratd.validation.lammps.driven`.
-    risen : int
-        Steps of the rise before them.
+    drive : Drive
+    held : Holds
     """
     if checkpoint is None:
         return
     holds, *older = _files_of(checkpoint)
-    spheres = holds.with_name(f"{holds.stem}.{risen + len(rows)}.restart")
+    spheres = holds.with_name(f"{holds.stem}.{held.risen + len(held.rows)}.restart")
     with atomic(spheres) as temporary:
         grain.save(temporary)
     with atomic(holds) as temporary, open(temporary, "wb") as handle:
-        np.savez(handle, rows=np.reshape(rows, (-1, 4)), risen=risen, spheres=spheres.name)
+        own = held._asdict() | {"rows": np.reshape(held.rows, (-1, 4))}
+        np.savez(handle, **drive._asdict(), **own, spheres=spheres.name)
     for path in older:
         if path != spheres:
             path.unlink(missing_ok=True)
 
 
-def last_hold(checkpoint):
-    """Rows, steps of the rise and file of the spheres of a checkpoint; None where there is none."""
+def last_hold(checkpoint, drive):
+    """`Holds` and file of the spheres of a checkpoint; None where there is none.
+
+    Raises
+    ------
+    InputError
+        If it was made in another way.
+    """
     if checkpoint is None or not (holds := _files_of(checkpoint)[0]).is_file():
         return None
     with np.load(holds) as found:
-        rows, risen = [tuple(row) for row in found["rows"].tolist()], int(found["risen"])
-        return rows, risen, holds.with_name(str(found["spheres"]))
+        before = Drive(str(found["code"]), float(found["step"]), float(found["rotations"]))
+        if before != drive:
+            raise InputError(f"{holds} is of {before}, and does not go on with {drive}: remove it to begin anew.")
+        rows = [tuple(row) for row in found["rows"].tolist()]
+        return Holds(float(found["start"]), int(found["risen"]), rows), holds.with_name(str(found["spheres"]))
 
 
 def forget(checkpoint):
