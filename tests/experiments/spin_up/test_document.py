@@ -206,14 +206,14 @@ def test_grains_beside_lammps_are_counted_by_the_median_of_their_starts():
     assert found["lammps.below 100"] == 1
 
 
-def test_the_largest_grains_beside_lammps_are_told_one_by_one():
+def test_grains_beside_lammps_are_told_by_type_and_size():
     rows = [("BA", 1e-7, 0.9), ("BA", 3e-7, 0.85), ("BAM1", 3e-7, 1.2), ("BAM2", 3e-7, np.nan)]
     default = pd.DataFrame(rows, columns=["type", "a_eff", "ratio"]).assign(way="default", mark="25 % of the mass")
     default = default.assign(material="q-S", seed=0, n_monomers=[15, 99, 100, 300])
     starts = pd.DataFrame({"limits": ["ratd"], "mark": ["first loss"], "median": [1.0], "least": [1.0], "most": [1.0]})
     found = of_lammps(default.assign(way="driven"), default, starts)
-    assert {name: found[name] for name in found if "largest " in name and "nm" not in name and "%" not in name} == {
-        "lammps.largest BA": 0.85, "lammps.largest BAM1": 1.2
+    assert {name: found[name] for name in found if name.endswith(" nm")} == {
+        "lammps.BA 100 nm": 0.9, "lammps.BA 300 nm": 0.85, "lammps.BAM1 300 nm": 1.2
     }  # fmt: skip
     assert found["lammps.below 100"] == 2
 

@@ -7,7 +7,7 @@ from scipy.constants import Julian_year
 from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
-from ratd.experiments.spin_up.cells import MATERIALS, joined
+from ratd.experiments.spin_up.cells import MATERIALS, joined, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.contact_law import printed_twist
@@ -213,8 +213,8 @@ def of_lammps(driven, default, starts):
     """
     values = {"lammps.near": NEAR_LAMMPS}
     quarter = default[default["mark"] == "25 % of the mass"].dropna(subset="ratio")
-    for kind, part in quarter[np.isclose(quarter["a_eff"], quarter["a_eff"].max(), atol=0.0)].groupby("type"):
-        values[f"lammps.largest {kind}"] = float(part["ratio"].median())
+    for (kind, size), part in quarter.groupby(["type", size_key(quarter["a_eff"])]):
+        values[f"lammps.{kind} {size / 1000:.0f} nm"] = float(part["ratio"].median())
     for (limits, mark), part in starts.dropna(subset="median").groupby(["limits", "mark"]):
         start = f"lammps.starts {limits} {mark}"
         values |= {
