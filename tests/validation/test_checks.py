@@ -27,6 +27,7 @@ from ratd.validation import (
     literal,
     mark_rules,
     pull_off,
+    quasi_static,
     relaxation,
     theory,
     vibrating_pair,
@@ -183,6 +184,41 @@ def test_relaxation(tmp_path, monkeypatch):
     (restless,) = said
     assert "seed 5: the grain does not come to rest" in restless
     io.write(tmp_path / "a.nc", as_dataset(rows, relaxation.KIND), relaxation.KIND)
+
+
+def spread(grain, by=0.0):
+    """A grain whose contacts are open: it comes apart as it comes to rest."""
+    return SimpleNamespace(**vars(grain) | {"position": 1.05 * grain.position})
+
+
+@pytest.fixture
+def no_grain_holds(monkeypatch):
+    for start in ("seated", "pressed"):
+        monkeypatch.setattr(f"ratd.experiments.relax.{start}", spread)
+
+
+@pytest.mark.usefixtures("no_grain_holds")
+def test_a_grain_that_comes_apart_has_a_row_without_values():
+    said = []
+    settings = SMALL | {"seeds": 2, "timestep_factor": TIMESTEP_FACTOR, "damped": True}
+    rows = relaxation.compute(settings, progress=said.append)
+    assert [(row["seed"], row["rested"], np.isnan(row["moved"])) for row in rows] == [(0, 0, True), (1, 0, True)]
+    assert len(said) == 2 and "the aggregate comes apart" in said[0]
+    rows = quasi_static.compute(SMALL | {"vary": {"moved": [1]}})
+    rows += damping.compute(SMALL | {"viscous_time_ps": [5]})
+    rows += damping.compute(SMALL | {"viscous_time_ps": [5], "epsilon": 0.2, "timestep_factor": {"implicit": [0.1]}})
+    assert len(rows) == 4
+    for row in rows:
+        assert row["outcome"].endswith("the aggregate comes apart") and np.isnan(row["omega_disr"])
+
+
+def test_an_error_of_the_program_is_no_row(monkeypatch):
+    def fails(*words, **named):
+        raise NotImplementedError("no such thing")
+
+    monkeypatch.setattr(relaxation, "relax", fails)
+    with pytest.raises(NotImplementedError):
+        relaxation.compute(SMALL | {"seeds": 1, "timestep_factor": TIMESTEP_FACTOR, "damped": True})
 
 
 def test_what_relaxation_changes():

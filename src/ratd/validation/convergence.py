@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ratd.aggregates.growth import grow
+from ratd.base.errors import GrainError, is_of_one_grain
 from ratd.base.materials import get_material
 from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.experiments.spin_up.cut_bound import cut_bound
@@ -173,7 +174,9 @@ def spin_one(grain, case, max_steps=None):
             **_pace(grain, case),
             max_steps=max_steps,
         )
-    except RuntimeError as error:
+    except (RuntimeError, GrainError) as error:
+        if not is_of_one_grain(error):
+            raise
         return row | {"outcome": "failed: " + str(error).split(":")[0]}
     marks = disruption(run)
     return row | {

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ratd.aggregates.growth import grow
+from ratd.base.errors import GrainError, is_of_one_grain
 from ratd.base.statistics import median_of
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
@@ -88,7 +89,9 @@ def _spin(grain, vary, value):
     row |= {"vary": vary, "value": number, **grain_values(grain)}
     try:
         run = spin_up(grain, **_arguments(vary, value))
-    except RuntimeError as error:
+    except (RuntimeError, GrainError) as error:
+        if not is_of_one_grain(error):
+            raise
         return row | {"outcome": "failed: " + str(error).split(":")[0]}
     marks = disruption(run)
     row |= {name: float(marks[name]) for name in MARKS}

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ratd.aggregates.growth import grow
+from ratd.base.errors import GrainError, is_of_one_grain
 from ratd.base.materials import get_material
 from ratd.engine.fragments import contact_pairs
 from ratd.engine.state import positions_as_given
@@ -48,6 +49,8 @@ def rest(grain, timestep_factor):
 
     Raises
     ------
+    GrainError
+        If the grain comes apart.
     RuntimeError
         If the grain does not come to rest.
     """
@@ -92,7 +95,9 @@ def compute(settings, progress=None):
         row = dict.fromkeys(COLUMNS, math.nan) | grain_values(grain) | {"viscous_time": material.viscous_time}
         try:
             row |= rest(grain, settings["timestep_factor"])
-        except RuntimeError as error:
+        except (RuntimeError, GrainError) as error:
+            if not is_of_one_grain(error):
+                raise
             row |= {"rested": 0, "n_contacts": grain.n_contacts}
             if progress is not None:
                 progress(f"seed {seed}: {error}")
