@@ -17,7 +17,6 @@ from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
 from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import io, kinds
 from ratd.validation import (
-    convergence,
     damping,
     energy,
     energy_step,
@@ -111,43 +110,6 @@ def test_random_motion_leaves_the_centre_of_mass_at_rest():
     still, _ = random_motion(grain, 0.0, 0.0, 1e7)
     centred = grain.position - grain.mass @ grain.position / grain.mass.sum()
     np.testing.assert_allclose(still, np.cross([0.0, 0.0, 1e7], centred), atol=1e-9)
-
-
-@pytest.fixture(scope="module")
-def convergence_rows():
-    return convergence.compute(
-        SMALL
-        | {
-            "production_timestep_factor": 0.05,
-            "epsilon": [0.5, 0.1],
-            "step_epsilon": 0.2,
-            "timestep_factor": {"implicit": [0.02, 0.1], "explicit": [0.02, 0.6]},
-            "xi_c_nm": [0.2, 6.4],
-            "viscous_time_ps": [1, 5, 9],
-        }
-    )
-
-
-def test_convergence_of_one_grain(convergence_rows):
-    table = pd.DataFrame(convergence_rows)
-    step = table[table["study"] == "timestep_factor"].set_index(["damping", "timestep_factor"])["omega_first_loss"]
-    finest = step["implicit", 0.02]
-    np.testing.assert_allclose(step["implicit"] / finest, 1.0, atol=0.05)
-    assert not step["explicit", 0.6] > 0.7 * finest  # the integration fails, or tears the grain early
-    laws = table[table["study"] == "law"].set_index("law")
-    assert laws.loc["exponential", "omega_first_loss"] == pytest.approx(
-        laws.loc["constant-epsilon", "omega_first_loss"], rel=0.1
-    )
-    times = table[table["study"] == "T_vis"].set_index("viscous_time")["omega_first_loss"]
-    assert times.loc[1e-12] < times.loc[5e-12] < times.loc[9e-12]
-
-
-@pytest.mark.parametrize("study", convergence.EPSILON_ALONE)
-def test_a_grain_for_slow_spin_ups_is_spun_up_with_its_own_epsilon_alone(study):
-    settings = SMALL | {"production_timestep_factor": 0.1, study: [0.2, 0.1]}
-    rows = convergence.compute(settings)
-    assert [(row["study"], row["epsilon"]) for row in rows] == [(study, 0.2), (study, 0.1)]
-    assert all(row["omega_first_loss"] > 0.0 for row in rows)
 
 
 def test_theory(tmp_path):
@@ -467,21 +429,12 @@ def test_plan_names_every_piece_once():
     plan = Checks(CONFIG)
     for extent in EXTENTS:
         assert set(plan.pieces[extent]) == {
-            "convergence", "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
+            "pull_off", "damping", "literal", "theory", "growth", "energy", "energy_step", "frames",
             "collision_step", "forces", "lammps", "mark_rules", "relaxation", "compression", "dense", "box_at_rest",
             "spring_back", "quasi_static", "remnant",
         }  # fmt: skip
         for check, pieces in plan.pieces[extent].items():
             assert pieces and kinds.kind_of(f"validation_{check}")
-    full = plan.pieces["full"]["convergence"]
-    assert full["q-S_BAM2_150nm_3"]["a_eff"] == pytest.approx(150e-9) and full["q-S_BAM2_150nm_3"]["seed"] == 3
-    assert {piece["type"] for piece in full.values()} == {"BA", "BAM1", "BAM2"}
-    fine = full["fine_BAM1_300nm_2"]
-    assert fine["a_eff"] == pytest.approx(300e-9) and fine["epsilon_fine"] and "step_epsilon" not in fine
-    assert full["large_BAM1_450nm_2"] | {"epsilon_large": None} == {
-        "production_timestep_factor": TIMESTEP_FACTOR, "material": "co-S", "epsilon_large": None, "type": "BAM1",
-        "a_eff": pytest.approx(450e-9), "seed": 2,
-    }  # fmt: skip
     for name, piece in plan.pieces["full"]["energy"].items():
         how = {"epsilon": EPSILON[piece["type"]], "timestep_factor": TIMESTEP_FACTOR}
         assert {key: piece[key] for key in how if key in piece} == ({} if name.startswith("waiting") else how)

@@ -51,7 +51,6 @@ HOMES = {
         for check in (
             "quasi_static",
             "remnant",
-            "convergence",
             "pull_off",
             "damping",
             "literal",

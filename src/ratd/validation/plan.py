@@ -73,7 +73,6 @@ class Checks:
         return {
             "quasi_static": self._quasi_static,
             "remnant": self._remnant,
-            "convergence": self._convergence,
             "pull_off": self._pull_off,
             "damping": self._damping,
             "literal": self._literal,
@@ -110,24 +109,6 @@ class Checks:
 
     def _remnant(self, own):
         return _each_grain(own["grains"], {key: own[key] for key in ("material", "drag", "every", "mass_left")})
-
-    def _convergence(self, own):
-        production = {"production_timestep_factor": self.config["production"]["timestep_factor"]}
-        shared = production | {
-            key: own[key] for key in ("epsilon", "step_epsilon", "timestep_factor", "xi_c_nm", "viscous_time_ps")
-        }
-        pieces = {
-            f"{material}_{kind}_{size}nm_{seed}": shared
-            | {"material": material, "type": kind, "a_eff": size * NM, "seed": seed}
-            for material, kind, size, seed in product(
-                own["materials"], own["types"], own["sizes_nm"], range(own["seeds"])
-            )
-        }
-        for name in ("fine", "large"):
-            for grains in own[name]:
-                once = production | {"material": grains["material"], f"epsilon_{name}": grains["epsilon"]}
-                pieces |= {f"{name}_{grain}": piece for grain, piece in _each_grain([grains], once).items()}
-        return pieces
 
     def _production(self, kind):
         """epsilon and timestep_factor of a type in the pipeline."""

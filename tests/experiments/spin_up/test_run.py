@@ -329,6 +329,16 @@ def test_what_is_not_a_grain_is_refused():
         spin_up("q-S", epsilon=0.1)
 
 
+def test_both_laws_give_the_same_first_loss_where_their_rates_are_alike():
+    grain, epsilon = ratd.grow("BAM2", 60e-9, "q-S", 0), 0.2
+    own = spin_up(grain, epsilon=epsilon, timestep_factor=0.05)
+    rate = epsilon * (how.FIRST_LOSS * own.attrs["cut_bound"]) ** 2
+    eq24 = spin_up(grain, angular_acceleration=rate, timestep_factor=0.05)
+    assert (own.attrs["spin_up_law"], eq24.attrs["spin_up_law"]) == ("constant-epsilon", "exponential")
+    losses = [float(ratd.disruption(run)["omega_first_loss"]) for run in (own, eq24)]
+    assert losses[1] == pytest.approx(losses[0], rel=0.1)
+
+
 def test_interface_of_the_notebook():
     grain = ratd.grow("BAM2", a_eff=60e-9, material="q-S", seed=7)
     run = ratd.spin_up(grain, angular_acceleration=1e16, timestep_factor=0.05, drive="prescribed", max_steps=None)
