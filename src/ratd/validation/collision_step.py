@@ -25,7 +25,7 @@ COLUMNS = {
     "energy_late": ("1", "the same at the end"),
     "balance": ("1", "greatest error of the balance of energy over the energy of the impact"),
 }
-KIND = table_kind("collision_step", "Collisions of small MRN clusters with several steps", COLUMNS)
+table_kind("collision_step", "Collisions of small MRN clusters with several steps", COLUMNS)
 LAW = dmt(viscous_time=0.5e-9, friction="velocity")
 """That of most collisions of docs/collision.md."""
 MASS_WITHIN, LENGTH_WITHIN = 0.05, 0.1

@@ -39,7 +39,7 @@ COLUMNS = {
     "steps": ("1", "number of time steps"),
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
 }
-KIND = table_kind("damping", "Marks of disruption against the viscous time and how finely it is resolved", COLUMNS)
+table_kind("damping", "Marks of disruption against the viscous time and how finely it is resolved", COLUMNS)
 RESOLUTION, RATE, WAITING = "T_vis", "epsilon", "waiting"
 """Studies, in the column of that name: one epsilon and several steps, several epsilon, or the spin-up that waits, which
 has neither (NaN)."""

@@ -22,7 +22,7 @@ COLUMNS = {
     "worst_to_quarter": ("1", "greatest gap over the work up to the loss of a quarter of the mass"),
     "worst": ("1", "greatest gap over the work in the whole run, fragments that left included"),
 }
-KIND = table_kind("energy", "Balance of energy", COLUMNS)
+table_kind("energy", "Balance of energy", COLUMNS)
 
 
 def compute(settings, progress=None):

@@ -44,7 +44,7 @@ COLUMNS = {
     "angular": ("1", "change of the angular momentum over its magnitude at the start"),
     **{f"dissipated_{mode}": ("J", f"energy dissipated so far: {mode}") for mode in DISSIPATION},
 }
-KIND = table_kind("forces", "Forces against potentials, and momenta", COLUMNS)
+table_kind("forces", "Forces against potentials, and momenta", COLUMNS)
 LARGEST, SMALLEST = 100e-9, 10e-9
 TILT = 1e-2
 """Standard deviation of each component of what is added to the contact pointers."""

@@ -32,7 +32,7 @@ COLUMNS = {
     "moved": ("1", "greatest distance of a monomer from its place at the start, inertial frame, over the mean radius"),
     "dissipated_energy": ("J", "energy dissipated so far, inertial frame"),
 }
-KIND = table_kind("frames", "Free grains in two frames", COLUMNS)
+table_kind("frames", "Free grains in two frames", COLUMNS)
 POSITION, VELOCITY, SPIN = (slice(int(first), int(first) + 3) for first in (X, VX, WX))
 """Columns of `ratd.engine.state.monomer_rows`."""
 LAW = jkr()

@@ -42,7 +42,7 @@ COLUMNS = {
     **{f"direction_{axis}": ("1", f"{axis} component of the direction of an arrival") for axis in "xyz"},
     **{f"place_{axis}": ("1", f"{axis} component of the direction to where an arrival ended") for axis in "xyz"},
 }
-KIND = table_kind("growth", "Growth", COLUMNS)
+table_kind("growth", "Growth", COLUMNS)
 
 
 def arrival(radius, material, seed):

@@ -31,7 +31,7 @@ COLUMNS = {
     "turned": ("rad s-1", "greatest angular velocity that its spins give the grain before it loses mass; exact only"),
     "stretched": ("1", "I_1 over that at rest when it turns so fast"),
 }
-KIND = table_kind("literal", "The literal drive", COLUMNS)
+table_kind("literal", "The literal drive", COLUMNS)
 NOT_KNOWN = {"turned": np.nan, "stretched": np.nan}
 EXPLICIT_END, EXACT_END = 1.25, 3.0
 """Runs go on to so many times the omega at which a solid grain parts."""

@@ -30,7 +30,7 @@ COLUMNS = {
     **{name: ("rad s-1", f"mark {name} of ratd.experiments.spin_up.marks") for name in MARKS},
     **{name: about for name, about in BEFORE_MARKS.items() if name != "steps_first_loss"},
 }
-KIND = table_kind("quasi_static", "Marks of the quasi-static spin-up against each of its numbers", COLUMNS)
+table_kind("quasi_static", "Marks of the quasi-static spin-up against each of its numbers", COLUMNS)
 PRODUCTION = "production"
 MOVED = 1e-12
 """Distance [m] by which the start of a repeat is moved."""

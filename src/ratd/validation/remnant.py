@@ -32,7 +32,7 @@ COLUMNS = {
     "roundness": ("1", "I_2/I_1 of the largest fragment: near 1 the axis of greatest inertia is not defined"),
     "steps": ("1", "time steps so far"),
 }
-KIND = table_kind("remnant", "Turning of what is left of a grain", COLUMNS)
+table_kind("remnant", "Turning of what is left of a grain", COLUMNS)
 LOSS = 0.05
 """A loss of at least this part of the grain between two looks is an event of `events`."""
 FEWEST = 4
