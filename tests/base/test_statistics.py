@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from ratd.base.statistics import (
-    binomial_interval,
     equal_weights,
     jackknife_error,
     mean_of,
@@ -155,13 +154,6 @@ def test_the_error_of_the_median_is_that_of_the_medians_of_drawn_samples(weighte
         chosen = np.concatenate([np.flatnonzero(group == names[k]) for k in draw])
         medians.append(quantiles(values[chosen], 0.5, weights[chosen]))
     assert found["error"] == pytest.approx(np.std(medians, ddof=1), rel=1e-9)
-
-
-def test_binomial_intervals_of_wilson():
-    assert binomial_interval(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
-    assert binomial_interval(5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
-    assert binomial_interval(10, 10)[1] == 1.0 and binomial_interval(0, 10)[0] == 0.0
-    assert np.isnan(binomial_interval(0, 0)).all()
 
 
 def test_weighted_lines_go_along_the_last_axis_and_equal_x_have_no_slope():

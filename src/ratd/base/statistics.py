@@ -1,14 +1,11 @@
 """Medians, means and slopes with their uncertainty, of values of which some cells may have more than others."""
 
-import math
 from functools import lru_cache
-from statistics import NormalDist
 
 import numpy as np
 import pandas as pd
 
 __all__ = [
-    "binomial_interval",
     "drawn_counts",
     "equal_weights",
     "jackknife_error",
@@ -284,26 +281,3 @@ def weighted_parabola(x, y, weights):
     bend = np.sum(weights * beyond * y, axis=-1) / np.where(spread > 1e-20, spread, np.nan)
     slope, level = weighted_line(x, y - bend[..., None] * square, weights)
     return bend, slope, level
-
-
-def binomial_interval(k, n, confidence=0.95):
-    """Wilson's interval of a probability, k of n.
-
-    Parameters
-    ----------
-    k, n : int
-    confidence : float
-
-    Returns
-    -------
-    tuple of float
-        Low and high; NaN for n = 0.
-    """
-    if n == 0:
-        return math.nan, math.nan
-    z = NormalDist().inv_cdf(0.5 + confidence / 2)
-    p = k / n
-    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    # exact at both ends, where the difference is left with rounding
-    return 0.0 if k == 0 else centre - half, 1.0 if k == n else centre + half

@@ -16,7 +16,7 @@ from ratd.experiments.spin_up.eq33 import (
     radius_of_reading,
 )
 from ratd.experiments.spin_up.fragmentation import MONOMER_CLASSES, exponents, mass_shares, power_law
-from ratd.experiments.spin_up.oblateness import is_oblate, oblate_change, oblate_counts, oblate_share
+from ratd.experiments.spin_up.oblateness import is_oblate, oblate_change, oblate_share
 from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_value, size_law, size_law_unit, slopes
 from synthetic_runs import make_fragments, make_table
 
@@ -282,9 +282,8 @@ def test_the_share_of_oblate_grains_is_of_known_shapes_and_counts_all_sizes_alik
 def test_oblate_grains_are_counted_at_both_times():
     axes = {"axis_a_start": [1, 1, 1], "axis_b_start": [2.0, 1.1, 1.5], "axis_c_start": [2.1, 2.0, np.nan]}
     axes |= {"axis_a_disr": [1, 1, 1], "axis_b_disr": [2.0, 3.0, 2.0], "axis_c_disr": [2.1, 3.1, 2.2]}
-    row = oblate_counts(pd.DataFrame({"type": "BA", **axes})).iloc[0]
-    assert (row["start_oblate"], row["start_known"]) == (1, 2)
-    assert (row["disr_oblate"], row["disr_known"]) == (3, 3) and row["disr_low"] < 1
+    table = pd.DataFrame({"material": "q-S", "type": "BA", "a_eff": 1e-7, **axes})
+    assert [oblate_share(table, when)[2:] for when in ("start", "disr")] == [(1, 2), (3, 3)]
 
 
 def test_what_the_share_of_oblate_grains_gains_is_counted_grain_by_grain():

@@ -21,7 +21,6 @@ from ratd.pipeline.kinds import Kind, as_dataset, entries, over, register
 __all__ = [
     "CALIBRATION_COLUMNS",
     "FIT_VALUES",
-    "MARKS",
     "calibrate",
     "calibration_table",
     "fit",
@@ -30,11 +29,6 @@ __all__ = [
     "same_rate",
 ]
 
-MARKS = {
-    "omega_first_loss": "first loss of mass",
-    "omega_mass_99": "1 % of the mass lost",
-    "omega_mass_75": "25 % of the mass lost",
-}
 ONSET = "omega_mass_99"
 """The mark that stands for the onset in Fig. 4: a single monomer that comes off cannot be seen there."""
 ONSET_LOSS = 0.01
@@ -118,7 +112,7 @@ def calibration_table(runs):
     return table.sort_values(["seed", "printed_acceleration", "timestep_factor"], ignore_index=True)
 
 
-def calibrate(table, omega_onset, mark=ONSET):
+def calibrate(table, omega_onset):
     """d omega/dt that gives the wanted onset of mass loss with the printed step.
 
     Parameters
@@ -127,8 +121,6 @@ def calibrate(table, omega_onset, mark=ONSET):
         From `calibration_table`.
     omega_onset : float
         [rad/s].
-    mark : str
-        One of `MARKS`.
 
     Returns
     -------
@@ -136,7 +128,7 @@ def calibrate(table, omega_onset, mark=ONSET):
         Scalars of `FIT_VALUES`. ln omega is fitted by least squares as a prefactor for each grain and one exponent for
         all; the mean prefactor stands for the grains that the paper averages over. Errors are found by leaving out one
         grain after the other, so that several runs of a grain count as what they are; NaN for one grain. All but
-        ``omega_onset`` is NaN where no grain has the mark at two accelerations, and so is every d omega/dt that lies
+        ``omega_onset`` is NaN where no grain has its onset at two accelerations, and so is every d omega/dt that lies
         more than a factor `FARTHEST` outside those of the runs.
 
     Raises
@@ -146,8 +138,8 @@ def calibrate(table, omega_onset, mark=ONSET):
     """
     if not omega_onset > 0:
         raise InputError(f"calibrate: omega_onset is {omega_onset}, but must be above 0 rad/s")
-    there = table[table[mark].notna()]
-    x, y = np.log(there["printed_acceleration"].to_numpy(float)), np.log(there[mark].to_numpy(float))
+    there = table[table[ONSET].notna()]
+    x, y = np.log(there["printed_acceleration"].to_numpy(float)), np.log(there[ONSET].to_numpy(float))
     grain, own = pd.factorize(there["seed"])
     exponent, answer = _inverted(x, y, grain, np.log(omega_onset))
     others = [grain != k for k in range(len(own))]
@@ -155,7 +147,7 @@ def calibrate(table, omega_onset, mark=ONSET):
     exponent_error, error = (jackknife_error(values) for values in left_out.T)
     least = there.assign(rate=same_rate(there["printed_acceleration"])).sort_values(["rate", "timestep_factor"])
     least = least.drop_duplicates("seed")
-    by_law = np.log(least["printed_acceleration"]) + np.log(omega_onset / least[mark]) / LAW_EXPONENT
+    by_law = np.log(least["printed_acceleration"]) + np.log(omega_onset / least[ONSET]) / LAW_EXPONENT
     answers = {
         "calibrated": answer,
         "calibrated_low": answer - error,

@@ -1,12 +1,11 @@
 """Whether grains are oblate, at rest and when they are disrupted."""
 
 import numpy as np
-import pandas as pd
 
-from ratd.base.statistics import binomial_interval, mean_of
+from ratd.base.statistics import mean_of
 from ratd.experiments.spin_up.cells import cell_of
 
-__all__ = ["is_oblate", "oblate_change", "oblate_counts", "oblate_share"]
+__all__ = ["is_oblate", "oblate_change", "oblate_share"]
 
 
 def is_oblate(a, b, c):
@@ -61,31 +60,3 @@ def _shapes(table, when):
     axes = [table[f"axis_{axis}_{when}"].to_numpy(float) for axis in "abc"]
     known = np.isfinite(axes).all(axis=0) & (axes[0] > 0)
     return known, known & is_oblate(*axes)
-
-
-def oblate_counts(table, by=("type",), confidence=0.95):
-    """Oblate grains (b/a > c/b) at rest and at disruption.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        One row a grain, of one drive.
-    by : sequence of str
-        Columns that make a row.
-    confidence : float
-        Of the intervals.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The columns of `by`; for `start` and `disr`: NAME_oblate, NAME_known (grains with a shape), NAME_low, NAME_high.
-    """
-    rows = []
-    for keys, part in table.groupby(list(by), sort=False):
-        row = dict(zip(by, keys, strict=True))
-        for when in ("start", "disr"):
-            n, k = (int(np.sum(chosen)) for chosen in _shapes(part, when))
-            low, high = binomial_interval(k, n, confidence)
-            row |= {f"{when}_oblate": k, f"{when}_known": n, f"{when}_low": low, f"{when}_high": high}
-        rows.append(row)
-    return pd.DataFrame(rows)

@@ -6,7 +6,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ratd.base.units import NM
 from ratd.base.words import plural
-from ratd.experiments.spin_up.oblateness import oblate_counts
+from ratd.experiments.spin_up.oblateness import oblate_share
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.experiments.spin_up.figures.style import type_style
 from ratd.pictures.snapshots import drive_of, drive_text
@@ -62,8 +62,8 @@ def figure6(table, material="a-C", sizes=SIZES, drive=None):
                 continue
             ends = _joined(axes, here, look)
             greatest = np.nanmax(np.column_stack([greatest, *ends]), axis=1)
-            (counts,) = oblate_counts(here).to_dict("records")
-            first, last = (f"{counts[f'{when}_oblate']}/{counts[f'{when}_known']}" for when in ("start", "disr"))
+            counts = (oblate_share(here, when)[2:] for when in ("start", "disr"))
+            first, last = (f"{oblate}/{known}" for oblate, known in counts)
             text = f"oblate: {first} \N{RIGHTWARDS ARROW} {last}"
             axes.text(0.97, 0.96, text, transform=axes.transAxes, ha="right", va="top", color=look["color"])
         _axes(row, greatest)

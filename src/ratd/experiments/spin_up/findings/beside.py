@@ -266,9 +266,9 @@ def of_overlap():
     return {"contact.least": min(overlaps), "contact.most": max(overlaps)}
 
 
-def of_printed_twist(radius=20e-9, duration=1e-9):
-    """How fast two q-S monomers turn against each other after a time [rad/s] by Eq. 17 as printed."""
-    return {"printed.twist": printed_twist(radius, get_material("q-S")) * duration}
+def of_printed_twist():
+    """How fast two q-S monomers of 20 nm turn against each other after 1 ns [rad/s] by Eq. 17 as printed."""
+    return {"printed.twist": printed_twist(20 * NM, get_material("q-S")) * 1e-9}
 
 
 def of_heat(size, strength=100.0):
