@@ -4,15 +4,23 @@ import numpy as np
 import pytest
 
 from ratd.base.statistics import (
+    _of_sorted,
     equal_weights,
     jackknife_error,
     mean_of,
     median_of,
-    quantiles,
     slope_error,
     slope_of,
     weighted_line,
 )
+
+
+def quantiles(values, probabilities, weights=None):
+    """Those behind `median_of`, of values in any order."""
+    values = np.asarray(values, dtype=float)
+    order = np.argsort(values, kind="stable")
+    weights = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)[order]
+    return _of_sorted(values[order], weights, len(values), np.asarray(probabilities, dtype=float))
 
 
 def test_cells_have_equal_weights():

@@ -6,14 +6,13 @@ import pytest
 
 from ratd.base.errors import FileError, InputError
 from ratd.base.measured import Measured
-from ratd.pipeline.documents import command, fill, slots
+from ratd.pipeline.documents import command, fill
 
 
 def test_slots_are_filled():
     values = {"a": 0.12345, "b": Measured(1.5, 0.25), "c": "ice", "d": 3e-6, "e": Measured(2.0), "n": 7}
     text = "{{a:.2f}} {{ b:.2f± }} {{b:.1f}} {{c}} {{d:.1e}} {{e:.0f±}} {{n}} {{a:.0%}}"
     assert fill(text, values) == "0.12 1.50 ± 0.25 1.5 ice 3.0·10⁻⁶ 2 7 12%"
-    assert slots(text) == ["a", "b", "b", "c", "d", "e", "n", "a"]
 
 
 def test_an_error_is_never_rounded_to_nothing():
@@ -49,7 +48,6 @@ TEXT = "X is {{X of a}}, N is {{ N }} and again {{X of a}}; {{later | not yet co
 
 
 def test_slots_with_words_of_their_own_need_no_value():
-    assert list(dict.fromkeys(slots(TEXT))) == ["X of a", "N", "later"]
     assert fill(TEXT, {"X of a": "0.5", "N": "3", "more": "7"}) == "X is 0.5, N is 3 and again 0.5; not yet computed."
     assert fill(TEXT, {"X of a": "0.5", "N": "3", "later": "8"}).endswith("; 8.")
 

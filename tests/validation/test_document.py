@@ -12,7 +12,7 @@ from ratd.base.measured import Measured
 from ratd.experiments.spin_up.figures.figure10 import LOOK
 from ratd.pictures.style import ONE_COLUMN
 from ratd.pipeline import io
-from ratd.pipeline.documents import fill, slots
+from ratd.pipeline.documents import fill
 from ratd.validation import (
     damping,
     document,
@@ -25,6 +25,7 @@ from ratd.validation import (
     relaxation,
 )
 from ratd.validation.tables import CASE, as_dataset
+from templates import slots
 from tiny_pipeline import ROOT
 
 GROWN = [

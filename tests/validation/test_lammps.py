@@ -174,7 +174,7 @@ def test_a_pair_rolls_back_in_both_codes_where_rolling_has_no_limit():
 
 @needs_lammps
 def test_springs_of_lammps_do_not_turn_with_a_pair_about_its_own_line():
-    """One of `DIFFERENCES`, which decides how whole grains compare in the inertial frame."""
+    """One of the differences of `peer_lammps`, which decides how whole grains compare in the inertial frame."""
     material, a = MATERIALS["q-S"], 40e-9
     delta_0 = equilibrium_compression(a / 2, material.surface_energy, material.reduced_modulus)
     step, steps = 1e-15, 10

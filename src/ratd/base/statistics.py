@@ -11,7 +11,6 @@ __all__ = [
     "jackknife_error",
     "mean_of",
     "median_of",
-    "quantiles",
     "slope_error",
     "slope_of",
     "weighted_line",
@@ -38,30 +37,12 @@ def equal_weights(cell):
     return len(place) / (len(count) * count[place])
 
 
-def quantiles(values, probabilities, weights=None):
-    """Quantiles of weighted values.
-
-    Parameters
-    ----------
-    values : array_like, shape (n,)
-    probabilities : array_like
-    weights : array_like, shape (n,), optional
-        Default: 1 each.
-
-    Returns
-    -------
-    numpy.ndarray
-        Those of `numpy.quantile` of a sample of n in which each value stands as often as its weight says, 1 in the mean
-        (Harrell's wtd.quantile, type "quantile"): the weights need not be whole.
-    """
-    values = np.asarray(values, dtype=float)
-    order = np.argsort(values, kind="stable")
-    weights = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)[order]
-    return _of_sorted(values[order], weights, len(values), np.asarray(probabilities, dtype=float))
-
-
 def _of_sorted(values, weights, n, probabilities):
-    """Quantiles (rows, k) of ascending values with weights (rows, values), each row a sample of n (rows,)."""
+    """Quantiles (rows, k) of ascending values with weights (rows, values), each row a sample of n (rows,).
+
+    They are those of `numpy.quantile` of a sample of n in which each value stands as often as its weight says, 1 in the
+    mean (Harrell's wtd.quantile, type "quantile"): the weights need not be whole.
+    """
     n = np.asarray(n, dtype=float)[..., None]
     last = np.cumsum(weights, axis=-1)  # the last place in the sample that each value takes, times something
     last *= n / last[..., -1:]

@@ -18,16 +18,11 @@ from difflib import get_close_matches
 from ratd.base.errors import FileError, InputError
 from ratd.base.measured import Measured
 
-__all__ = ["command", "fill", "slots"]
+__all__ = ["command", "fill"]
 
 _SLOT = re.compile(r"\{\{\s*([^{}:=|]+?)\s*(?:([:=|])([^}]*))?\}\}")
 _CONDITION = re.compile(r"<!-- (?:if (not )?(\S+)|(end)) -->")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def slots(template):
-    """Names of the slots of a template, in their order, list of str."""
-    return [name for name, _, _ in _SLOT.findall(template)]
 
 
 def fill(template, values, where="the template"):

@@ -3,7 +3,7 @@
 LAMMPS shrinks the box by `fix deform` and carries the spheres along (`remap x`), so that its velocities are those
 relative to the box, as here. It lacks the drag -H u of the homogeneous equations, which `fix viscous` adds: without it
 arms that swing freely have less energy, the more the box has shrunk. What differs stands in
-`ratd.validation.peer_lammps.DIFFERENCES`; what it does to dense clusters tells `ratd.validation.dense`. LAMMPS keeps
+`ratd.validation.peer_lammps`; what it does to dense clusters tells `ratd.validation.dense`. LAMMPS keeps
 its lists of neighbours, see `ratd.validation.lammps_box`.
 """
 

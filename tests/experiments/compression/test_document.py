@@ -20,7 +20,8 @@ from ratd.experiments.compression.tables import joined
 from ratd.experiments.compression.tension_findings import of_spun, of_tension
 from ratd.experiments.compression.verdicts import below
 from ratd.pipeline import io
-from ratd.pipeline.documents import fill, slots
+from ratd.pipeline.documents import fill
+from templates import slots
 
 PAGE, APPENDIX = (path.read_text(encoding="utf-8") for path in document.DOCUMENTS.values())
 TEMPLATE = "\n".join(path.read_text(encoding="utf-8") for path in document.DOCUMENTS)
