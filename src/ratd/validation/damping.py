@@ -10,8 +10,6 @@ import math
 from dataclasses import replace
 from itertools import product
 
-import numpy as np
-
 from ratd.aggregates.growth import grow
 from ratd.base.errors import GrainError, is_of_one_grain
 from ratd.base.materials import get_material
@@ -20,7 +18,7 @@ from ratd.drives.rotating import CONSTANT_EPSILON, SPIN_UP_LAWS
 from ratd.experiments.spin_up.how import QUASI_STATIC
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
-from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, empty_row, grain_values, table_kind
 
 MARKS = ("omega_disr", "omega_first_loss", "omega_mass_75", "omega_contacts_75")
 # words and columns are those of the files that are kept, of a time when more than T_vis was varied
@@ -101,8 +99,7 @@ def _spin_each(grain, found, progress):
 
 def _spin(grain, case, max_steps=None):
     """One run of a grain as a row of `COLUMNS`, of which `case` has those that say how it is spun up."""
-    row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
-    row |= case | grain_values(grain)
+    row = empty_row(COLUMNS) | case | grain_values(grain)
     row |= {"xi_c": grain.material.critical_rolling_displacement, "n_contacts": grain.n_contacts}
     waits = case["law"] == QUASI_STATIC
     how = {} if waits else {name: case[name] for name in ("epsilon", "timestep_factor", "damping")}

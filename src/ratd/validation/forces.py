@@ -20,7 +20,7 @@ from ratd.laws.jkr_with_springs import K_ROLL, K_SLIDE, K_TWIST, NIX, NJX, PHI, 
 from ratd.laws.tangential import TWISTING_LIMIT
 from ratd.validation.energy_step import ELASTIC, NO_ROLLING_LIMIT
 from ratd.validation.free_grain import random_motion
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import empty_row, table_kind
 
 MODES = {"normal": PULL_OFF, "sliding": K_SLIDE, "rolling": K_ROLL, "twisting": K_TWIST}
 """Mode -> the constant of a contact that switches it off when zero, in the order of a law's `energies`."""
@@ -178,7 +178,7 @@ def deviations(contact, material):
         greatest_force, greatest_torque = np.abs(force).max(), np.abs(torque).max()
         moment, size = np.cross(apart, force[0]), max(greatest_torque, np.linalg.norm(apart) * greatest_force)
         unbalanced = [np.abs(torque.sum(0) + moment).max() / size]
-        row = empty_row() | dict(
+        row = empty_row(COLUMNS) | dict(
             study="derivative",
             material=material.name,
             mode=mode,
@@ -199,11 +199,6 @@ def deviations(contact, material):
         row["reaction"] = max(unbalanced)
         rows.append(row)
     return rows
-
-
-def empty_row():
-    """A row of `COLUMNS` without values."""
-    return {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
 
 
 def momenta_of(grain, speed, timestep_factor, steps, samples):
@@ -248,7 +243,7 @@ def momenta_of(grain, speed, timestep_factor, steps, samples):
     linear, angular = (np.linalg.norm(run[name] - run[name][0], axis=1) for name in ("momentum", "angular_momentum"))
     angular /= np.linalg.norm(run["angular_momentum"][0])
     return [
-        empty_row()
+        empty_row(COLUMNS)
         | dict(
             study="momenta",
             material=grain.material.name,

@@ -15,7 +15,7 @@ from ratd.aggregates.growth import MIGRATIONS, TYPES, grow, grow_with_radii
 from ratd.base.materials import get_material
 from ratd.geometry.directions import random_direction, random_normal
 from ratd.laws.contact_constants import equilibrium_compression, reduced_radius
-from ratd.validation.tables import table_kind
+from ratd.validation.tables import empty_row, table_kind
 
 MONOMER_RADIUS = 20e-9
 """Any will do: the form of aggregates of equal monomers depends on it by the compression of the contacts only."""
@@ -112,18 +112,14 @@ def compute(settings, progress=None):
     return rows
 
 
-def empty_row(study):
-    """A row of `COLUMNS` without values."""
-    return {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()} | {"study": study}
-
-
 def arrivals(settings):
     """Rows of `COLUMNS`, one an arrival."""
     material = get_material(settings["material"])
     rows = []
     for seed in range(settings["arrivals"]):
         direction, place, impact = arrival(MONOMER_RADIUS, material, seed)
-        row = empty_row("arrivals") | dict(material=material.name, type="BA", n_monomers=2, seed=seed, impact=impact)
+        row = empty_row(COLUMNS) | {"study": "arrivals", "material": material.name, "type": "BA", "n_monomers": 2}
+        row |= {"seed": seed, "impact": impact}
         for k, axis in enumerate("xyz"):
             row |= {f"direction_{axis}": direction[k], f"place_{axis}": place[k]}
         rows.append(row)
@@ -176,7 +172,8 @@ def depth_correlation(grain):
 
 
 def _row(study, grain, seed, migration):
-    return empty_row(study) | dict(
+    return empty_row(COLUMNS) | dict(
+        study=study,
         material=grain.material.name,
         type=grain.type,
         migration=migration,

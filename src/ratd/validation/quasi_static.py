@@ -16,7 +16,7 @@ from ratd.engine.semi_implicit import semi_implicit
 from ratd.experiments.spin_up.how import DRIVES, STEP
 from ratd.experiments.spin_up.marks import BEFORE_MARKS, before_marks, disruption
 from ratd.experiments.spin_up.run import spin_up
-from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, empty_row, grain_values, table_kind
 
 MARKS = ("omega_first_loss", "omega_mass_75", "omega_disr")
 COLUMNS = {
@@ -84,7 +84,7 @@ def _spin(grain, vary, value):
     if vary == "moved":
         shift = np.random.default_rng(value).normal(scale=MOVED, size=grain.position.shape)
         grain = grain.replace(position=grain.position + shift)
-    row = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
+    row = empty_row(COLUMNS)
     number = WORDS[vary].index(value) if vary in WORDS else float(value)
     row |= {"vary": vary, "value": number, **grain_values(grain)}
     try:

@@ -4,7 +4,6 @@ A spin-up begins with the grain at rest. One grain that does not come to rest en
 of the paper is not made; so all grains of the ensemble are relaxed, which is quick beside a spin-up.
 """
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from ratd.engine.state import positions_as_given
 from ratd.experiments.relax import relax
 from ratd.geometry.neighbours import connected_components
 from ratd.geometry.shape import centre_of_mass, principal_axes
-from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, empty_row, grain_values, table_kind
 
 COLUMNS = {
     **GRAIN_COLUMNS,
@@ -92,7 +91,7 @@ def compute(settings, progress=None):
     rows = []
     for seed in range(settings["seeds"]):
         grain = grow(settings["type"], settings["a_eff"], material, seed)
-        row = dict.fromkeys(COLUMNS, math.nan) | grain_values(grain) | {"viscous_time": material.viscous_time}
+        row = empty_row(COLUMNS) | grain_values(grain) | {"viscous_time": material.viscous_time}
         try:
             row |= rest(grain, settings["timestep_factor"])
         except (RuntimeError, GrainError) as error:

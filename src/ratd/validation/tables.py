@@ -1,5 +1,6 @@
 """Tables of the checks: one row a case, the same columns in memory and in netCDF."""
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -56,6 +57,21 @@ def table_kind(name, title, columns):
         Name of the kind, for `read_tables` and `as_dataset`.
     """
     return register(f"validation_{name}", Kind(title, entries(columns, CASE)))
+
+
+def empty_row(columns):
+    """A case without values: "" in a column of text, NaN in any other.
+
+    Parameters
+    ----------
+    columns : dict of str to tuple of str
+        As of `table_kind`.
+
+    Returns
+    -------
+    dict
+    """
+    return {name: np.nan if units else "" for name, (units, _) in columns.items()}
 
 
 def as_dataset(rows, kind):
