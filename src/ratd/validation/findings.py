@@ -10,6 +10,7 @@ from ratd.base.measured import Measured, median
 from ratd.base.statistics import mean_of, median_of
 from ratd.experiments.compression.beside_lammps import EDGES, of_box, of_lammps
 from ratd.experiments.compression.beside_lammps import of_dense as dense_over
+from ratd.experiments.spin_up.cells import GRAIN, joined
 from ratd.experiments.spin_up.how import TIMESTEP_FACTOR
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.solid import solid_omega
@@ -39,7 +40,6 @@ __all__ = [
     "verdict",
 ]
 
-GRAIN = ["material", "type", "a_eff", "seed"]
 PARTED = 0.01
 """Part by which a pair may part off the exact answer."""
 DERIVATIVE, DRIFT = 1e-6, 1e-10
@@ -372,9 +372,16 @@ def of_damping(table):
     explicit = resolved[resolved["damping"] == "explicit"]
     finest = explicit[explicit["timestep_factor"] == explicit["timestep_factor"].min()]
     own = resolved[(resolved["damping"] == "implicit") & (resolved["timestep_factor"] == TIMESTEP_FACTOR)]
-    both = own.merge(finest, on=GRAIN, suffixes=("", "_finest"))
+    both = joined(own, finest, ["omega_mass_75"], suffix="_finest")
     values["damping.BAM2 implicit"] = median(both["omega_mass_75"] / both["omega_mass_75_finest"])
     return values
+
+
+def _beside_known(table, coriolis):
+    """Runs of the drive literal with ``known``, the omega of the first loss of each grain in the consistent model."""
+    own = table[table["drive"] == "prescribed"].rename(columns={"omega_first_loss": "known"})
+    runs = table[(table["drive"] == "literal") & (table["coriolis"] == coriolis)]
+    return joined(runs, own, ["known"]).drop(columns="size")
 
 
 def runs_of_solid_grains(table):
@@ -387,9 +394,7 @@ def runs_of_solid_grains(table):
         consistent model, ``solid``, that of a solid grain under the printed equations, and ``q``,
         (d omega/dt / dt)^(1/3).
     """
-    own = table.loc[table["drive"] == "prescribed", [*GRAIN, "omega_first_loss"]]
-    late = table[(table["drive"] == "literal") & (table["coriolis"] == "explicit")]
-    runs = late.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
+    runs = _beside_known(table, "explicit")
     columns = runs[["known", "spin_share", "angular_acceleration", "timestep"]]
     found = [solid_omega(*row) for row in columns.itertuples(index=False)]
     runs = runs.assign(
@@ -405,9 +410,7 @@ def of_literal(table):
     runs = runs_of_solid_grains(table)
     over = runs["omega_first_loss"] / runs["solid"]
     most = float((over - 1.0).abs().quantile(0.9))
-    exact = table[(table["drive"] == "literal") & (table["coriolis"] == "exact")]
-    own = table.loc[table["drive"] == "prescribed", [*GRAIN, "omega_first_loss"]]
-    exact = exact.merge(own.rename(columns={"omega_first_loss": "known"}), on=GRAIN)
+    exact = _beside_known(table, "exact")
     exact = exact[np.isfinite(exact["omega_first_loss"])]
     grain, higher = runs.groupby(GRAIN).ngroup(), runs["omega_first_loss"] / runs["known"]
     bias = {f"literal.{kind} solid": median(part, group=grain[part.index]) for kind, part in over.groupby(runs["type"])}

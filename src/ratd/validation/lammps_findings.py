@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 
 from ratd.base.measured import median
+from ratd.experiments.spin_up.cells import GRAIN
 from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, new_figure, styled
-from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, GRAIN, MARKS, TURNING, threshold
+from ratd.validation.lammps import COMPARISONS, ELASTIC_ROLLING, MARKS, TURNING, threshold
 
 __all__ = ["SHORT", "beside", "of_each", "of_lammps", "thresholds"]
 

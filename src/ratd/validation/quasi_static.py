@@ -13,6 +13,7 @@ from ratd.base.errors import GrainError, is_of_one_grain
 from ratd.base.statistics import median_of
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.semi_implicit import semi_implicit
+from ratd.experiments.spin_up.cells import GRAIN
 from ratd.experiments.spin_up.how import DRIVES, STEP
 from ratd.experiments.spin_up.marks import BEFORE_MARKS, before_marks, disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -123,13 +124,12 @@ def shifts(table, marks=MARKS, by=("type",)):
     pandas.DataFrame
         vary, value, the columns of `by`, mark, and what `median_of` of ratd.base.statistics gives for the ratios.
     """
-    grain = ["material", "type", "a_eff", "seed"]
     # a grain that two groups of config/validation.yaml hold was computed twice, with the same bits
-    own = table[table["vary"] == PRODUCTION].drop_duplicates(grain).set_index(grain)
+    own = table[table["vary"] == PRODUCTION].drop_duplicates(GRAIN).set_index(GRAIN)
     found = []
     for (vary, value), part in table[table["vary"] != PRODUCTION].groupby(["vary", "value"]):
         for mark in marks:
-            ratio = part[mark].to_numpy() / own[mark].reindex(pd.MultiIndex.from_frame(part[grain])).to_numpy()
+            ratio = part[mark].to_numpy() / own[mark].reindex(pd.MultiIndex.from_frame(part[GRAIN])).to_numpy()
             for key, ratios in part.assign(ratio=ratio).groupby(list(by), observed=True)["ratio"]:
                 names = dict(zip(by, key if isinstance(key, tuple) else (key,), strict=True))
                 found.append({"vary": vary, "value": value, **names, "mark": mark} | median_of(ratios))

@@ -14,7 +14,7 @@ from ratd.base.errors import FileError
 from ratd.base.measured import Measured, geometric_mean, median
 from ratd.base.statistics import median_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import TYPES, joined
+from ratd.experiments.spin_up.cells import GRAIN, TYPES, joined
 from ratd.experiments.spin_up.figures.style import TYPE_MARKER
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.run_files import read_table
@@ -22,7 +22,7 @@ from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, new_figure, save
 from ratd.pipeline.atomic import atomic, write_text
 from ratd.pipeline.documents import command, fill
 from ratd.validation import remnant
-from ratd.validation.findings import GRAIN, decided
+from ratd.validation.findings import decided
 from ratd.validation.quasi_static import MARKS, PRODUCTION, shifts
 
 __all__ = ["collect", "findings", "main", "redraw"]

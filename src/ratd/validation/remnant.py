@@ -15,6 +15,7 @@ from ratd.engine.state import monomer_rows
 from ratd.engine.step import FEW_CONTACTS, until
 from ratd.engine.step import run as go_on
 from ratd.experiments.relax import relax
+from ratd.experiments.spin_up.cells import GRAIN
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.how import how_to_turn
 from ratd.geometry.box import open_space
@@ -118,7 +119,7 @@ def events(table):
         last look before the next event [rad]), roundness.
     """
     found = []
-    keys = ["material", "type", "a_eff", "seed", "drag"]
+    keys = [*GRAIN, "drag"]
     for key, run in table.groupby(keys, sort=False):
         mass, tilt, turns = (run[name].to_numpy() for name in ("mass_fraction", "tilt", "turns"))
         starts = np.flatnonzero(-np.diff(mass) >= LOSS) + 1

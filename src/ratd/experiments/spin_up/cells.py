@@ -9,12 +9,14 @@ import xarray as xr
 
 from ratd.base.errors import InputError
 
-__all__ = ["as_frame", "cell_of", "cell_statistics", "joined", "size_key", "sort_cells"]
+__all__ = ["GRAIN", "as_frame", "cell_of", "cell_statistics", "joined", "size_key", "sort_cells"]
 
 MATERIALS = ("a-C", "q-S", "co-S")
 """Materials in the order of the paper."""
 TYPES = ("BA", "BAM1", "BAM2")
 """Types of grains in the order of the paper."""
+GRAIN = ["material", "type", "a_eff", "seed"]
+"""The columns that together name one grain."""
 N_BOOTSTRAP = 1000
 """Samples of a bootstrap over grains."""
 

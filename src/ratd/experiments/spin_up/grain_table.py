@@ -10,7 +10,7 @@ import xarray as xr
 from ratd.aggregates.files import CUT_BOUND
 from ratd.aggregates.grain import Grain
 from ratd.base.errors import InputError
-from ratd.experiments.spin_up.cells import as_frame, size_key, sort_cells
+from ratd.experiments.spin_up.cells import GRAIN, as_frame, size_key, sort_cells
 from ratd.experiments.spin_up.marks import VARIABLES as MARK_COLUMNS
 from ratd.pipeline import io
 from ratd.pipeline.kinds import kind_of
@@ -18,16 +18,12 @@ from ratd.pipeline.kinds import kind_of
 __all__ = [
     "COLUMNS",
     "GRAIN_COLUMNS",
-    "KEYS",
     "RUN_COLUMNS",
     "grain_table",
     "spun_up_files",
     "spun_up_table",
     "table_dataset",
 ]
-
-KEYS = ("material", "type", "a_eff", "seed")
-"""The columns that together name one grain."""
 
 GRAIN_COLUMNS = {
     "material": ("", "material of the monomers"),
@@ -96,7 +92,7 @@ def grain_table(grains=None, marks=None):
     Raises
     ------
     InputError
-        If there is nothing to tabulate, a column of `KEYS` is missing, two rows name the same grain, or a mark has
+        If there is nothing to tabulate, a column of `GRAIN` is missing, two rows name the same grain, or a mark has
         no grain.
     """
     if grains is None and marks is None:
@@ -265,11 +261,11 @@ def _of_monomers(radius):
 
 def _keyed(table, what):
     """Table with an index that names the grain, checked to be unique."""
-    for name in KEYS:
+    for name in GRAIN:
         if name not in table:
             raise InputError(f"grain_table: the {what} have no '{name}'")
     table.index = pd.MultiIndex.from_arrays(
-        [table["material"], table["type"], size_key(table["a_eff"]), table["seed"]], names=KEYS
+        [table["material"], table["type"], size_key(table["a_eff"]), table["seed"]], names=GRAIN
     )
     if table.index.has_duplicates:
         material, kind, picometres, seed = table.index[table.index.duplicated()][0]

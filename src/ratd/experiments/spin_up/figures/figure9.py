@@ -7,7 +7,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from ratd.base.errors import InputError
 from ratd.base.units import NM, PS
 from ratd.base.words import plural
-from ratd.experiments.spin_up.cells import size_key
+from ratd.experiments.spin_up.cells import GRAIN, size_key
 from ratd.experiments.spin_up.parameters import MARKS, OWN, PARAMETERS, effect
 from ratd.experiments.spin_up.printed import VISCOUS_EFFECT
 from ratd.experiments.spin_up.figures.style import type_style
@@ -58,7 +58,7 @@ def figure9(table):
     """
     if not len(table):
         raise InputError("figure9: give at least one run")
-    n_grains = len(table.drop_duplicates(["material", "type", "a_eff", "seed"]))
+    n_grains = len(table.drop_duplicates(GRAIN))
     material = ", ".join(dict.fromkeys(table["material"]))
     sizes = ", ".join(f"{size / 1000:.4g}" for size in np.unique(size_key(table["a_eff"])))
     title = f"{plural(n_grains, f'{material} grain')} of {sizes} nm with every setting, {drive_text(drive_of(table))}"

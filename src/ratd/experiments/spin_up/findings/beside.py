@@ -7,7 +7,7 @@ from scipy.constants import Julian_year
 from ratd.base.materials import get_material, sphere_mass
 from ratd.base.units import NM, PS
 from ratd.experiments.spin_up.calibration import PRINTED_STEP
-from ratd.experiments.spin_up.cells import MATERIALS, joined, size_key
+from ratd.experiments.spin_up.cells import GRAIN, MATERIALS, joined, size_key
 from ratd.experiments.spin_up.findings.claims import all_of, is_within
 from ratd.experiments.spin_up.composition import PROPERTIES, table1, table2
 from ratd.experiments.spin_up.contact_law import printed_twist
@@ -230,7 +230,7 @@ def of_lammps(driven, default, starts):
             f"lammps.{way} {mark} largest": part["a_eff"].max() / NM,
         }
         values |= {f"lammps.{way} {mark} {kind}": median(own["ratio"]) for kind, own in part.groupby("type")}
-    monomers = default.groupby(["material", "type", "a_eff", "seed"])["n_monomers"].first()
+    monomers = default.groupby(GRAIN)["n_monomers"].first()
     return values | {"lammps.below 100": int((monomers < 100).sum())}
 
 

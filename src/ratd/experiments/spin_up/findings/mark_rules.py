@@ -5,12 +5,11 @@ import numpy as np
 from ratd.base.measured import Measured, geometric_mean
 from ratd.base.statistics import slope_error, slope_of
 from ratd.base.units import NM
-from ratd.experiments.spin_up.cells import TYPES, size_key
+from ratd.experiments.spin_up.cells import GRAIN, TYPES, size_key
 from ratd.experiments.spin_up.marks import MAJORITY, MEDIAN_WINDOW
 
 __all__ = ["of_mark_rules"]
 
-GRAIN = ["material", "type", "a_eff", "seed"]
 LARGE = 299.0
 """Sizes from this one on count for the power of size [nm]."""
 MOVED = 0.1

@@ -3,7 +3,7 @@
 from ratd.aggregates.strength import TENSILE_FACTOR
 from ratd.base.measured import Measured, geometric_mean
 from ratd.base.statistics import mean_of
-from ratd.experiments.spin_up.cells import TYPES, cell_of
+from ratd.experiments.spin_up.cells import GRAIN, TYPES, cell_of
 from ratd.experiments.spin_up.pulled import AXES, MARKS, VARIANTS, WAYS, beside_spin, usual
 
 __all__ = ["of_pulled"]
@@ -33,7 +33,7 @@ def of_pulled(table, spun):
         left over the strength (median).
     """
     own = beside_spin(usual(table), spun)
-    grains = table.drop_duplicates(["material", "type", "a_eff", "seed"])
+    grains = table.drop_duplicates(GRAIN)
     values = {
         "pulled.grains": len(grains),
         "pulled.beside": int((own["spin_omega_mass_75"].notna() & (own["way"] == "box")).sum()),
@@ -72,7 +72,7 @@ def _of_type(own):
 
 def _varied(table):
     """Slots of variants over the usual pull of the same grain."""
-    keys = ["way", "material", "type", "a_eff", "seed"]
+    keys = ["way", *GRAIN]
     reference = usual(table)[[*keys, "ratio"]].rename(columns={"ratio": "reference"})
     joined = table.merge(reference, on=keys, validate="many_to_one")
     values = {}
