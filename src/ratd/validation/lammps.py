@@ -7,7 +7,7 @@ other coordinates. *Driven*: omega grows in small steps, and in between an outer
 turning with omega: `PARTS` times a step a rigid rotation gives it the angular momentum I omega. That is the drive
 `prescribed` in a form that both codes can do, ratd in the inertial frame and LAMMPS in one that turns. *Elastic
 rolling*: driven, with no limit to the elastic rolling in either code, which tells how much of what is left between
-them comes from that limit (see `ratd.validation.peer_lammps.DIFFERENCES`).
+them comes from that limit (see `ratd.validation.peer_lammps`).
 """
 
 from dataclasses import replace
@@ -42,7 +42,7 @@ from ratd.validation import peer_lammps
 from ratd.validation.energy_step import NO_ROLLING_LIMIT
 from ratd.validation.lammps_checkpoint import Drive, Holds, forget, keep, last_hold
 from ratd.validation.peer_lammps import Spheres, stable_step
-from ratd.validation.tables import GRAIN_COLUMNS, grain_values, table_kind
+from ratd.validation.tables import GRAIN_COLUMNS, empty_row, grain_values, table_kind
 
 CODES = ("ratd", "LAMMPS")
 TURNING = "LAMMPS, turning frame"
@@ -70,8 +70,6 @@ COLUMNS = {
     "mass_left": ("1", "mass of the largest fragment over that of the grain at the end"),
 }
 KIND = table_kind("lammps", "ratd beside LAMMPS", COLUMNS)
-GRAIN = ["material", "type", "a_eff", "seed"]
-"""Columns that say which grain."""
 MARKS = {"first loss": 1.0 - 1e-9, "25 % of the mass": 0.75}
 """A grain has come apart when its largest fragment holds less than this part of the mass."""
 PARTS = 8
@@ -482,5 +480,4 @@ def compute(settings, progress=None):
 
 
 def _row(**values):
-    empty = {name: "" if not units else np.nan for name, (units, _) in COLUMNS.items()}
-    return empty | {"version": peer_lammps.version()} | values
+    return empty_row(COLUMNS) | {"version": peer_lammps.version()} | values

@@ -27,6 +27,7 @@ from ratd.engine.layout import RADIUS, X
 from ratd.engine.leapfrog import leapfrog
 from ratd.engine.state import monomer_rows, new_state
 from ratd.experiments.relax import relax
+from ratd.experiments.spin_up.cells import GRAIN
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.findings.beside import NEAR_LAMMPS, beside_all_starts
 from ratd.experiments.spin_up.marks import disruption
@@ -39,7 +40,7 @@ from ratd.pipeline.blocks import rows
 from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, row_sizes
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Task, command, key
-from ratd.validation.lammps import FIRST_OMEGA, GRAIN, MARKS, InRatd, driven, threshold
+from ratd.validation.lammps import FIRST_OMEGA, MARKS, InRatd, driven, threshold
 from ratd.validation.lammps_findings import SHORT
 from ratd.validation.lammps_spin_up import (
     CONFIG,

@@ -29,7 +29,7 @@ from ratd.base.materials import MATERIALS
 from ratd.base.measured import geometric_mean, median
 from ratd.base.units import NM
 from ratd.experiments.relax import relax
-from ratd.experiments.spin_up.cells import TYPES, size_key, sort_cells
+from ratd.experiments.spin_up.cells import GRAIN, TYPES, size_key, sort_cells
 from ratd.experiments.spin_up.cut_bound import cut_bound
 from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.run import spin_up
@@ -39,7 +39,7 @@ from ratd.pipeline.kinds import MATERIAL, ROW, Kind, Variable, over, register, r
 from ratd.pipeline.provenance import source_hash
 from ratd.pipeline.queue import Table, Task, command, key
 from ratd.validation import peer_lammps
-from ratd.validation.lammps import GRAIN, MARKS, TURNING, InLammps, InRatd, driven, threshold
+from ratd.validation.lammps import MARKS, TURNING, InLammps, InRatd, driven, threshold
 from ratd.validation.lammps_checkpoint import once
 from ratd.validation.lammps_findings import SHORT, of_each
 from ratd.validation.plan import Checks

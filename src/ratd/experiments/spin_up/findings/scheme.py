@@ -3,7 +3,7 @@
 import numpy as np
 
 from ratd.base.measured import geometric_mean, median
-from ratd.experiments.spin_up.cells import joined
+from ratd.experiments.spin_up.cells import GRAIN, joined
 from ratd.experiments.spin_up.findings.claims import is_within
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.size_law import SPLIT
@@ -13,7 +13,6 @@ __all__ = ["of_scheme"]
 CHANGES = {"slow": ("pace", 0.005), "torque": ("drive", 1.0), "drag": ("drag", 0.3)}
 """Word -> what is changed, and its value, as in the check ``quasi_static``: a quarter of the pace, a torque in place of
 a given omega, a third of the drag."""
-GRAIN = ["material", "type", "a_eff", "seed"]
 MARKS = {"quarter": MARK, "disr": "omega_disr"}
 
 
