@@ -52,15 +52,16 @@ def of_curve(table, grown):
         All grains as grown, for the printed omega of the example.
     """
     law = curved_law(table, MARK).set_index("type")
-    values, bent = {}, []
+    values, bent, straight = {}, [], {}
     for kind, row in law.iterrows():
         values |= {f"curve.{kind} {name}": Measured(row[name], row[f"{name}_error"]) for name in ("C", "p", "q")}
         values |= {f"curve.{kind} scatter": math.exp(row["scatter"]), f"curve.{kind} n": int(row["n_grains"])}
         values |= _farthest(table[table["type"] == kind], kind, row)
         left_out = table.loc[table["type"] == kind, MARK].isna().groupby(np.round(table["a_eff"] / NM)).mean()
         values[f"curve.{kind} left out"] = float(left_out.max())
-        straight = size_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * SPLIT)], MARK).iloc[0]
-        values[f"curve.{kind} C from a_0"] = Measured(straight["C"], straight["C_error"])
+        large = table[(table["type"] == kind) & (table["a_eff"] > 0.99 * SPLIT)]
+        straight[kind] = own = size_law(large, MARK).iloc[0]
+        values[f"curve.{kind} C from a_0"] = Measured(own["C"], own["C_error"])
         for least in FROM:
             part = curved_law(table[(table["type"] == kind) & (table["a_eff"] > 0.99 * least)], MARK).iloc[0]
             values[f"curve.{kind} q from {least / NM:.0f}"] = Measured(part["q"], part["q_error"])
@@ -72,6 +73,7 @@ def of_curve(table, grown):
     material, kind, size = EXAMPLE
     row, own = law.loc[kind], get_material(material)
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
+    values["example.omega straight"] = unit_of(own) * curved_law_value(size, *straight[kind][["C", "p"]])
     cell, measured = (_of_cell(each, *EXAMPLE) for each in (grown, table))
     values["example.mean 1e7"], values["example.n"] = geometric_mean(measured[MARK].dropna() / 1e7), len(measured)
     values["example.median 1e7"] = median(measured[MARK] / 1e7)
