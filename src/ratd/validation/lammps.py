@@ -101,7 +101,6 @@ class InRatd:
         self._omega = 0.0
         self._mass = monomer_rows(self._state)[:, MASS].sum()
         self.timestep = float(self._state.scalar[DT])
-        self.code = "ratd"
 
     def __enter__(self):
         return self
@@ -280,9 +279,11 @@ def driven(make, unit, step, rotations, first=FIRST_OMEGA, checkpoint=None):
     file of the spheres as ``saved``. The checkpoint goes when the run ends.
     """
     start, risen, rows = Holds(first * unit, 0, [])
-    with make() as grain:
-        drive = Drive(grain.code, step, rotations)
-    before = last_hold(checkpoint, drive)
+    drive = before = None
+    if checkpoint is not None:
+        with make() as grain:
+            drive = Drive(grain.code, step, rotations)
+        before = last_hold(checkpoint, drive)
     if before is not None:
         # where the grain loses its first mass may have moved a little with the code
         (start, risen, rows), saved = before

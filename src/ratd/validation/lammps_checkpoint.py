@@ -89,7 +89,8 @@ def last_hold(checkpoint, drive):
     InputError
         If it was made in another way.
     """
-    if checkpoint is None or not (holds := _files_of(checkpoint)[0]).is_file():
+    holds = _files_of(checkpoint)[0]
+    if not holds.is_file():
         return None
     with np.load(holds) as found:
         before = Drive(str(found["code"]), float(found["step"]), float(found["rotations"]))
