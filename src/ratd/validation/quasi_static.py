@@ -124,7 +124,7 @@ def shifts(table, marks=MARKS, by=("type",)):
     pandas.DataFrame
         vary, value, the columns of `by`, mark, and what `median_of` of ratd.base.statistics gives for the ratios.
     """
-    # a grain that two groups of config/validation.yaml hold was computed twice, with the same bits
+    # a grain that two groups of config/validation.yaml hold stands twice
     own = table[table["vary"] == PRODUCTION].drop_duplicates(GRAIN).set_index(GRAIN)
     found = []
     for (vary, value), part in table[table["vary"] != PRODUCTION].groupby(["vary", "value"]):
