@@ -19,7 +19,7 @@ from ratd.experiments.spin_up.oblateness import oblate_change, oblate_share
 from ratd.experiments.spin_up.printed import FIRST_LOSS, PAPER_MEAN_RADIUS, PRINTED_GRAINS
 from ratd.base.measured import Measured, median
 
-__all__ = ["claims", "grown_claims", "is_above", "is_below", "is_within"]
+__all__ = ["claims", "grown_claims", "is_above", "is_below", "is_near_quarter", "is_within"]
 
 BAM = ("BAM1", "BAM2")
 STAYS = 0.05
@@ -51,6 +51,11 @@ def is_below(found, limit):
 def is_within(found, low, high):
     """Verdict: low < found < high."""
     return all_of([is_above(found, low), is_below(found, high)])
+
+
+def is_near_quarter(ratio):
+    """Verdict: omega_disr over the omega at which a quarter is lost is about 1."""
+    return is_within(ratio, 0.8, 1.25)
 
 
 def all_of(verdicts):
@@ -139,11 +144,11 @@ def _how(letter, table, fragments):
         values[f"{letter}.lost at disr {kind}"] = 100.0 * _by_type(lost, table)[kind].value
     apart = _by_type(table["omega_disr"] / table[MARK], table)
     values |= {f"{letter}.disr over quarter {kind}": value for kind, value in apart.items()}
-    values[f"{letter}.holds quarter BAM"] = all_of(is_within(apart[kind], 0.8, 1.25) for kind in BAM)
+    values[f"{letter}.holds quarter BAM"] = all_of(is_near_quarter(apart[kind]) for kind in BAM)
     for name in CLASSES:
         part = of_class(table[table["type"] == "BA"], name)
         ratio = values[f"{letter}.disr over quarter BA {name}"] = median(part["omega_disr"] / part[MARK], cell_of(part))
-        values[f"{letter}.holds quarter BA {name}"] = is_within(ratio, 0.8, 1.25)
+        values[f"{letter}.holds quarter BA {name}"] = is_near_quarter(ratio)
     half = fragments[fragments["half"]]
     grains = half.groupby("grain")
     pieces = _by_type(grains["mass_fraction"].max(), grains[["material", "type", "a_eff"]].first())

@@ -4,7 +4,7 @@ import numpy as np
 
 from ratd.base.measured import geometric_mean, median
 from ratd.experiments.spin_up.cells import GRAIN, joined
-from ratd.experiments.spin_up.findings.claims import is_within
+from ratd.experiments.spin_up.findings.claims import is_near_quarter
 from ratd.experiments.spin_up.marks import MARK
 from ratd.experiments.spin_up.size_law import SPLIT
 
@@ -45,7 +45,7 @@ def of_scheme(table):
         values[f"scheme.{word} all"] = geometric_mean(every[MARK] / every[f"{MARK}_usual"])
         for behind, when in (("_usual", "before"), ("", "after")):
             values[f"scheme.{word} {when}"] = median(own[f"omega_disr{behind}"] / own[f"{MARK}{behind}"])
-    verdicts = {is_within(values[f"scheme.slow {when}"], 0.8, 1.25) for when in ("before", "after")}
+    verdicts = {is_near_quarter(values[f"scheme.slow {when}"]) for when in ("before", "after")}
     values["scheme.holds quarter BA large"] = verdicts.pop() if len(verdicts) == 1 else "open"
     return values
 
