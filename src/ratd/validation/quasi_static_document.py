@@ -16,6 +16,7 @@ from ratd.base.statistics import median_of
 from ratd.base.units import NM
 from ratd.experiments.spin_up.cells import GRAIN, TYPES, joined
 from ratd.experiments.spin_up.figures.style import TYPE_MARKER
+from ratd.experiments.spin_up.findings.scheme import paired
 from ratd.experiments.spin_up.grain_table import spun_up_files, spun_up_table
 from ratd.experiments.spin_up.run_files import read_table
 from ratd.pictures.style import GREY, TWO_COLUMNS, TYPE_COLOUR, new_figure, save, styled
@@ -147,11 +148,11 @@ def findings(table, looks):
     unsure = every_class[(every_class["mark"] == "omega_mass_75") & ~known]
     values["few"] = int((unsure["n"] < ENOUGH).sum())
     farthest = unsure.loc[(unsure["median"] - 1.0).abs().idxmax()]
-    three = _paired(table[table["size_class"] == farthest["size_class"]], own, farthest["vary"], farthest["value"])
+    three = paired(table[table["size_class"] == farthest["size_class"]], own, farthest["vary"], farthest["value"])
     three = three[three["type"] == farthest["type"]]
     off = np.sort((three["omega_mass_75"] / three["omega_mass_75_own"] - 1.0).dropna())
     values["unsure each"] = ", ".join(f"{100.0 * each:.0f} %".replace("-", "−") for each in off)
-    ba = _paired(table[is_hard(table)], own, "stretch", 1e-14)
+    ba = paired(table[is_hard(table)], own, "stretch", 1e-14)
     values["BA differ"] = ((ba["omega_mass_75"] / ba["omega_mass_75_own"] - 1.0).abs() > 0.01).mean()
     values["all classes"] = int((every_class["mark"] == "omega_mass_75").sum())
     values["steady"] = (
@@ -207,12 +208,6 @@ def _steps(own):
     return values
 
 
-def _paired(table, own, vary, value):
-    """Rows of one change beside those of production of the same grain, in the same order."""
-    part = table[(table["vary"] == vary) & np.isclose(table["value"], value, atol=0.0)].drop_duplicates(GRAIN)
-    return part.merge(own, on=GRAIN, suffixes=("", "_own"))
-
-
 def is_hard(table):
     """Whether grains are BA of 300 nm and above, the hard case, (n,) of bool."""
     return (table["type"] == "BA") & (table["a_eff"] > 250 * NM)
@@ -231,7 +226,7 @@ def _means(table, own):
     """
     values, steady = {}, {mark: [] for mark in MARKS}
     for vary, value in (*SHOWN, ("epsilon", 0.004), ("unwaiting", 0.1)):
-        pairs = _paired(table, own, vary, value)
+        pairs = paired(table, own, vary, value)
         for mark in MARKS:
             found = geometric_mean(pairs[mark] / pairs[f"{mark}_own"])
             values[f"mean {vary} {value:g} {mark}"] = found
@@ -239,7 +234,7 @@ def _means(table, own):
                 steady[mark].append(found)
         values[f"mean {vary} {value:g} grains"] = len(pairs)
     for vary, value in STEADY:
-        pairs = _paired(table, own, vary, value)
+        pairs = paired(table, own, vary, value)
         hard = pairs[is_fluffy(pairs)]
         for mark in MARKS:
             ratio = pairs[mark] / pairs[f"{mark}_own"]
@@ -262,7 +257,7 @@ def _single(table):
     own = hard[hard["vary"] == PRODUCTION].drop_duplicates(GRAIN)
     far = {}
     for vary, value in STEADY:
-        pairs = _paired(hard, own, vary, value)
+        pairs = paired(hard, own, vary, value)
         off = (pairs["omega_mass_75"] / pairs["omega_mass_75_own"] - 1.0).abs().dropna()
         if len(off) >= ENOUGH:
             rng = np.random.default_rng(0)
@@ -275,7 +270,7 @@ def _single(table):
 
 def _same(table, own):
     """Share of the BAM grains that lose a quarter within 0.1 %, whatever number of the scheme is changed."""
-    pairs = pd.concat(_paired(table, own, *pair) for pair in STEADY)
+    pairs = pd.concat(paired(table, own, *pair) for pair in STEADY)
     off = (pairs["omega_mass_75"] / pairs["omega_mass_75_own"] - 1.0).abs()
     return {"BAM same": (off[(pairs["type"] != "BA") & off.notna()] < 1e-3).mean()}
 
@@ -284,7 +279,7 @@ def _arms(table, own):
     """BA grains of 300 nm, the hard case."""
     values = {}
     for vary, value in ARMS:
-        pairs = _paired(table, own, vary, value)
+        pairs = paired(table, own, vary, value)
         pairs = pairs[is_fluffy(pairs)]
         for mark in ("first_loss", "mass_75"):
             ratios = pairs[f"omega_{mark}"] / pairs[f"omega_{mark}_own"]
@@ -295,7 +290,7 @@ def _arms(table, own):
 
 def _torque(table, own):
     """omega, L and shape under a torque over those under a prescribed omega."""
-    pairs = _paired(table, own, "drive", 1.0)
+    pairs = paired(table, own, "drive", 1.0)
     values = {}
     for kind, part in pairs.groupby("type"):
         values[f"torque {kind} omega_disr"] = _text(median_of(part["omega_disr"] / part["omega_disr_own"]))
@@ -317,7 +312,7 @@ def _torque(table, own):
     values["torque higher"] = (omega > 1.02).mean()
     values["torque stretched"] = _text(median_of(yielding[omega > 1.02]))
     values["torque lower"] = (omega < 0.98).mean()
-    chaos = _paired(table, own, "moved", 1.0)
+    chaos = paired(table, own, "moved", 1.0)
     moved = chaos["omega_mass_75"] / chaos["omega_mass_75_own"]
     values["moved hard"] = ((moved[is_hard(chaos)] - 1.0).abs() > 0.01).mean()
     values["moved differs"] = ((moved.dropna() - 1.0).abs() > 0.02).mean()
@@ -330,7 +325,7 @@ def _slow(table, own):
     for vary, value in (
         ("integrator", 1.0), ("epsilon", 0.004), ("epsilon", 0.001), ("unwaiting", 1.0), ("unwaiting", 0.1),
     ):  # fmt: skip
-        pairs = _paired(table, own, vary, value)
+        pairs = paired(table, own, vary, value)
         for mark in MARKS:
             values[f"{vary} {value:g} {mark}"] = _text(median_of(pairs[mark] / pairs[f"{mark}_own"]))
         values[f"{vary} {value:g} grains"] = len(pairs)
@@ -372,7 +367,7 @@ def strips(table):
     own = table[table["vary"] == PRODUCTION].drop_duplicates(GRAIN)
     names = list(SHOWN.values())
     for place, (vary, value) in enumerate(SHOWN):
-        pairs = _paired(table, own, vary, value)
+        pairs = paired(table, own, vary, value)
         ratios = pairs["omega_mass_75"] / pairs["omega_mass_75_own"]
         for shift, kind in zip((-0.24, 0.0, 0.24), TYPES, strict=True):
             part = np.sort(ratios[pairs["type"] == kind].dropna())
