@@ -130,9 +130,13 @@ def test_omega_over_print_and_its_powers_of_size_are_found():
 def test_grains_above_their_firm_bound_are_counted():
     table = grains(lambda kind, nm: 1e8, sizes=(100, 400))
     firm = table.assign(firm_bound=np.where(table["a_eff"] > 2e-7, 5e8, 2e9))
+    firm["firm_bound_quarter"] = np.where(table["type"] == "BA", np.inf, 1.5 * firm["firm_bound"])
     values = what_contacts_hold(table, firm, table)
     assert values["bound.grown"] == 18 and values["bound.above"] == 9
     assert values["bound.largest below"] == 100.0
+    # BA has no cut that leaves a quarter on either side
+    assert values["bound.above quarter"] == 6 and values["bound.largest below quarter"] == 400.0
+    assert values["bound.over quarter"] == pytest.approx(1.0 / 3.0)
     assert values["bound.load"] == pytest.approx(0.5 * ((1e9 / 5e8) ** 2 + (1e9 / 2e9) ** 2))
     assert values["bound.over firm"] == 0
     # what holds longest is at a fifth of its bound, and the printed 1e9 above that of all; at four times, above none

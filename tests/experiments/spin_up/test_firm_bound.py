@@ -9,7 +9,7 @@ from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow, grow_with_radii
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.cut_bound import cut_bound, plane_normals
-from ratd.experiments.spin_up.firm_bound import bridge_pulls, firm_bound, slide_forces
+from ratd.experiments.spin_up.firm_bound import QUARTER, bridge_pulls, firm_bound, slide_forces
 from ratd.geometry.shape import principal_axes
 from ratd.laws.contact_constants import equilibrium_compression
 
@@ -74,6 +74,10 @@ def test_the_firm_bound_is_the_least_of_bridges_and_planes(type, n, seed):
     parts = [*parts_of_bridges(grain), *parts_of_planes(grain, 23)]
     expected = math.sqrt(min(naive_cut(grain, part) for part in parts))
     assert firm_bound(grain, directions=23) == pytest.approx(expected, rel=1e-9)
+    # cuts that leave a quarter of the mass on either side
+    large = [part for part in parts if 0.25 <= grain.mass[part].sum() / grain.mass.sum() <= 0.75]
+    expected = math.sqrt(min((naive_cut(grain, part) for part in large), default=math.inf))
+    assert firm_bound(grain, least_part=QUARTER, directions=23) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("material", ["a-C", "q-S", "co-S"])

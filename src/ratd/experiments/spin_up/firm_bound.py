@@ -23,6 +23,7 @@ from ratd.pipeline.kinds import Kind, as_dataset, entries, register
 
 __all__ = [
     "FIRM_BOUND_COLUMNS",
+    "QUARTER",
     "bridge_pulls",
     "firm_bound",
     "least_firm_bridge",
@@ -31,6 +32,8 @@ __all__ = [
     "table",
 ]
 
+QUARTER = 0.25
+"""Part of the mass whose loss is the mark "a quarter"."""
 FIRM_BOUND_COLUMNS = {
     "material": ("", "material"),
     "type": ("", "BA, BAM1 or BAM2"),
@@ -40,17 +43,24 @@ FIRM_BOUND_COLUMNS = {
         "rad s-1",
         "angular velocity above which the weakest cut gives way though its contacts hold sideways and push as well",
     ),
+    "firm_bound_quarter": (
+        "rad s-1",
+        "the same of the cuts that leave a quarter of the mass or more on either side; inf where there is none",
+    ),
 }
 """Units and meaning of the columns of the table of firm bounds."""
 
 
-def firm_bound(grain, *, directions=500):
+def firm_bound(grain, *, least_part=0.0, directions=500):
     """Bound on the angular velocity about a_1 that an aggregate as it stands can hold, whatever its contacts do.
 
     Parameters
     ----------
     grain : Grain
         Or anything with its attributes position, radius, mass, contacts and material.
+    least_part : float, optional
+        Only cuts that leave this part of the mass or more on either side. With `QUARTER` the bound is that of the mark
+        "a quarter" of a grain that is whole: above it the weakest of these cuts gives way, and no piece has 3/4 of it.
     directions : int, optional
         Number of directions of cutting planes.
 
@@ -73,14 +83,15 @@ def firm_bound(grain, *, directions=500):
     across = np.stack([axes[1], axes[2]], axis=1)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
     load = np.ascontiguousarray(grain.mass[:, None] * (position @ across))
+    share = grain.mass / grain.mass.sum()
     first, second = grain.contacts.T
     apart = position[second] - position[first]
     normal = np.ascontiguousarray((apart / np.linalg.norm(apart, axis=1)[:, None]) @ across)
     pull = contact_strengths(grain.radius, grain.contacts, grain.material.surface_energy)
     slide = slide_forces(reduced_radius(grain.radius[first], grain.radius[second]), grain.material)
-    least = least_firm_bridge(load, grain.contacts, normal, pull, slide)
-    planes = plane_normals(directions)
-    return math.sqrt(min(least, least_firm_plane(position, load, grain.contacts, normal, pull, slide, planes)))
+    cut = (load, share, grain.contacts, normal, pull, slide)
+    bridge = least_firm_bridge(*cut, least_part)
+    return math.sqrt(min(bridge, least_firm_plane(position, *cut, plane_normals(directions), least_part)))
 
 
 def slide_forces(R, material):
@@ -108,8 +119,10 @@ def bridge_pulls(load, contacts):
 
     Parameters
     ----------
-    load, contacts
-        As in `cut_bound.least_bridge_cut`.
+    load : (n, d) float64 array
+        What is summed, such as the load of `cut_bound.least_bridge_cut`.
+    contacts
+        As there.
 
     Returns
     -------
@@ -117,8 +130,8 @@ def bridge_pulls(load, contacts):
         Which contacts they are.
     beyond : (b,) int64 array
         0 or 1: which end of the contact is in the part beyond.
-    pulls : (b, 2) float64 array
-        Sum of the loads of the part beyond [kg m].
+    pulls : (b, d) float64 array
+        Sum of the loads of the part beyond.
 
     Notes
     -----
@@ -152,21 +165,27 @@ def bridge_pulls(load, contacts):
     return bridges, beyond, pull[end]
 
 
-def least_firm_bridge(load, contacts, normal, pull, slide):
+def least_firm_bridge(load, share, contacts, normal, pull, slide, least_part):
     """Least omega^2 [rad2 s-2] at which a contact that alone holds two parts together gives way; inf without one.
 
     Parameters
     ----------
-    load, contacts
-        As in `bridge_pulls`.
+    load : (n, 2) float64 array
+        Of `cut_bound.least_bridge_cut` [kg m].
+    share : (n,) float64 array
+        Mass of each monomer over that of the grain.
+    contacts : (k, 2) int array
     normal : (k, 2) float64 array
         Part of the unit vector from the first to the second monomer of a contact in the plane normal to the axis.
     pull, slide : (k,) float64 array
         F_C and F_S of each contact [N].
+    least_part : float
+        See `firm_bound`.
     """
-    bridges, beyond, pulls = bridge_pulls(load, contacts)
+    bridges, beyond, sums = bridge_pulls(np.column_stack([load, share]), contacts)
+    pulls, part = sums[:, :2], sums[:, 2]
     size = np.linalg.norm(pulls, axis=1)
-    known = size > 0
+    known = (size > 0) & (np.minimum(part, 1.0 - part) >= least_part)
     bridges, beyond, pulls, size = bridges[known], beyond[known], pulls[known], size[known]
     if not len(bridges):
         return math.inf
@@ -180,17 +199,19 @@ def least_firm_bridge(load, contacts, normal, pull, slide):
 
 
 @jit
-def least_firm_plane(position, load, contacts, normal, pull, slide, planes):
+def least_firm_plane(position, load, share, contacts, normal, pull, slide, planes, least_part):
     """Least omega^2 at which all contacts across a plane together give way.
 
     Parameters
     ----------
     position : (n, 3) float64 array
         Centres [m].
-    load, contacts, normal, pull, slide
+    load, share, contacts, normal, pull, slide
         As in `least_firm_bridge`.
     planes : (d, 3) float64 array
         Normals of the planes; of each, every plane that divides the centres differently is tried.
+    least_part : float
+        See `firm_bound`.
 
     Returns
     -------
@@ -211,11 +232,14 @@ def least_firm_plane(position, load, contacts, normal, pull, slide, planes):
             i, j = rank[contacts[c, 0]], rank[contacts[c, 1]]
             held[min(i, j)] += min(pull[c], slide[c])
             held[max(i, j)] -= min(pull[c], slide[c])
-        x, y, at_least = 0.0, 0.0, 0.0
+        x, y, at_least, part = 0.0, 0.0, 0.0, 0.0
         for s in range(n - 1):
             x += load[order[s], 0]
             y += load[order[s], 1]
             at_least += held[s]
+            part += share[order[s]]
+            if min(part, 1.0 - part) < least_part:
+                continue
             size = math.hypot(x, y)
             if not at_least < least * size:
                 continue
@@ -255,7 +279,8 @@ def table(files, settings, say):
     rows = []
     for path in files:
         for grain in read_grains(path):
-            own = (grain.material.name, grain.type, grain.a_eff, float(grain.seed), firm_bound(grain))
+            bounds = firm_bound(grain), firm_bound(grain, least_part=QUARTER)
+            own = (grain.material.name, grain.type, grain.a_eff, float(grain.seed), *bounds)
             rows.append(dict(zip(FIRM_BOUND_COLUMNS, own, strict=True)))
         say(f"{len(rows)} grains, the last ones from {path}")
     return {"firm_bounds": as_dataset(pd.DataFrame(rows))}

@@ -215,8 +215,10 @@ def what_contacts_hold(grown, firm, table):
     table : pandas.DataFrame
         The grains that were spun up, as `beside_print` returns it.
     """
-    grown, table = (joined(own, firm, ["firm_bound"]) for own in (grown, table))
+    grown, table = (joined(own, firm, ["firm_bound", "firm_bound_quarter"]) for own in (grown, table))
     above = grown["printed"] > grown["firm_bound"]
+    # cuts that leave less than a quarter on one side do not count here
+    above_quarter = grown["printed"] > grown["firm_bound_quarter"]
     load = (grown["printed"] / grown["firm_bound"]) ** 2
     # what would bring the two nearer: stronger contacts, and the mean radius of the grains in the printed formula
     stronger = math.sqrt(4.0 / 3.0) * grown["firm_bound"]
@@ -226,6 +228,9 @@ def what_contacts_hold(grown, firm, table):
         "bound.above both": int((lower > stronger).sum()),
         "bound.over": float((grown["printed"] / grown["firm_bound"]).median()),
         "bound.above": int(above.sum()),
+        "bound.above quarter": int(above_quarter.sum()),
+        "bound.over quarter": float((grown["printed"] / grown["firm_bound_quarter"]).median()),
+        "bound.largest below quarter": float(grown.loc[~above_quarter, "nm"].max()),
         "bound.largest below": float(grown.loc[~above, "nm"].max()),
         "bound.load": float(load.median()),
         "bound.small omega": float((grown["printed"] < 5e8).mean()),

@@ -17,7 +17,7 @@ from ratd.experiments.spin_up.size_law import SPLIT, curved_law, curved_law_valu
 __all__ = ["of_curve", "of_exponents_apart", "of_law", "of_prediction"]
 
 EXAMPLE = ("q-S", "BAM1", 400 * NM)
-"""The grain of which the document works out omega."""
+"""The grain of which the document works out omega; its first page has that of the other types as well."""
 LARGER = 150 * NM
 """Sizes from which on grains have monomers enough for a curve to meet the mean of every size."""
 FROM = (100 * NM, 150 * NM)
@@ -74,14 +74,16 @@ def of_curve(table, grown):
     row, own = law.loc[kind], get_material(material)
     values["example.omega"] = unit_of(own) * curved_law_value(size, *row[["C", "p", "q"]])
     values["example.omega straight"] = unit_of(own) * curved_law_value(size, *straight[kind][["C", "p"]])
-    cell, measured = (_of_cell(each, *EXAMPLE) for each in (grown, table))
+    measured = _of_cell(table, *EXAMPLE)
     values["example.mean 1e7"], values["example.n"] = geometric_mean(measured[MARK].dropna() / 1e7), len(measured)
-    values["example.median 1e7"] = median(measured[MARK] / 1e7)
-    values["example.scatter"] = math.exp(np.log(measured[MARK]).std())
-    values["example.printed"] = eq33(
-        size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
-        cell["filling_factor"].mean(), *TABLE_3[material, kind],
-    )  # fmt: skip
+    for other in law.index:
+        cell, measured = (_of_cell(each, material, other, size) for each in (grown, table))
+        printed = eq33(
+            size, own.surface_energy, own.density, PAPER_MEAN_RADIUS, cell["n_contacts"].mean(),
+            cell["filling_factor"].mean(), *TABLE_3[material, other],
+        )  # fmt: skip
+        values[f"example.{other} median 1e7"] = median(measured[MARK] / 1e7)
+        values[f"example.{other} printed 1e7"] = printed / 1e7
     return values
 
 
