@@ -49,6 +49,7 @@ _HOME = {
     "read_runs": "experiments.saved",
     "read_table": "experiments.spin_up.run_files",
     "spin_up": "experiments.spin_up.run",
+    "static_limit": "experiments.spin_up.static_limit",
     "stretch": "experiments.compression.stretch",
     "write_particles": "aggregates.write_particles",
 }

@@ -154,6 +154,7 @@ def spin_up(
     checkpoint: str | Path | None = None,
     progress: Callable[[float, float, float, int], object] | None = None,
 ) -> xr.Dataset: ...
+def static_limit(grain: Grain, axis: ArrayLike | None = None) -> float: ...
 def stretch(
     compressed: Any,
     strain_rate: float = 3e-06,

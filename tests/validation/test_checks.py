@@ -13,7 +13,9 @@ from ratd.aggregates.growth import grow
 from ratd.base.materials import MATERIALS
 from ratd.base.statistics import median_of
 from ratd.experiments.spin_up.how import EPSILON, TIMESTEP_FACTOR
+from ratd.experiments.spin_up.marks import disruption
 from ratd.experiments.spin_up.solid import solid_omega, turned_by_spins
+from ratd.experiments.spin_up.static_limit import static_limit
 from ratd.laws.contact_constants import equilibrium_compression
 from ratd.pipeline import io, kinds
 from ratd.validation import (
@@ -116,6 +118,18 @@ def test_theory(tmp_path):
     rows = theory.compute(SMALL | {"seeds": 2, "epsilon": 0.2, "timestep_factor": 0.05})
     assert all(0.3 < row["omega_first_loss"] / row["cut_bound"] < 3.0 for row in rows)
     io.write(tmp_path / "a.nc", as_dataset(rows, theory.KIND), theory.KIND)
+
+
+def test_arms_that_swing_outward_have_their_static_limit_if_the_spin_up_is_slow():
+    """By default they come after omega, against the drag of the scheme; the loss itself is hardly moved."""
+    grain, found = grow("BA", 100e-9, "q-S", 4), {}
+    for name, how in {"usual": {}, "slow": {"pace": 0.005, "unrest": 0.005}}.items():
+        run, last = theory.followed(grain, **how)
+        loss = disruption(run)["omega_first_loss"].item()
+        found[name] = loss, loss / static_limit(last, axis=theory.AXIS)
+    assert found["usual"][1] > 1.2
+    assert found["slow"][1] == pytest.approx(1.0, abs=0.01)
+    assert found["slow"][0] == pytest.approx(found["usual"][0], rel=0.005)
 
 
 def test_the_mark_is_read_by_every_rule(tmp_path):

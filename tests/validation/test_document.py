@@ -217,6 +217,9 @@ def test_a_grain_beyond_its_bound_is_noticed(tables):
     assert findings.of_theory(table)["theory.verdict"] == "met"
     higher = table.assign(omega_first_loss=table["omega_first_loss"] * np.where(table["type"] == "BA", 1.02, 1.0))
     assert findings.of_theory(higher)["theory.verdict"] == "missed"
+    assert findings.of_theory(table)["theory.static verdict"] == "met"
+    lower = table.assign(static_limit_at_loss=table["static_limit_at_loss"] / 1.02)
+    assert findings.of_theory(lower)["theory.static verdict"] == "missed"
 
 
 def test_a_verdict_is_open_where_errors_do_not_decide():

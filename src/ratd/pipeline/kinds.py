@@ -37,6 +37,7 @@ HOMES = {
     "formulae": "ratd.experiments.spin_up.formulae",
     "pairs": "ratd.experiments.spin_up.pairs",
     "firm_bounds": "ratd.experiments.spin_up.firm_bound",
+    "static_limits": "ratd.experiments.spin_up.static_limit",
     "pulled": "ratd.experiments.spin_up.pulled",
     "shapes": "ratd.experiments.spin_up.shapes",
     **dict.fromkeys(("built_clusters", "collisions"), "ratd.experiments.collision.files"),

@@ -88,6 +88,7 @@ def bounds(table):
         "cut_bound": "cut bound,\nas grown",
         "firm_bound": "firm bound,\nas grown",
         "firm_bound_at_loss": "firm bound, shape\njust before the loss",
+        "static_limit_at_loss": "static limit, shape\njust before the loss",
     }
     for place, column in enumerate(shown):
         for shift, kind in zip((-0.25, 0.0, 0.25), TYPES, strict=True):

@@ -66,8 +66,6 @@ SHIFTED = 0.01
 """What nothing should change by more."""
 SIGMAS = 2.0
 """Errors by which a criterion must be met or missed, else it is open."""
-LARGE_TREE = 20
-"""Monomers of a BA grain from which on it is told apart from small ones."""
 CHANCE = 0.01
 """Least probability of a test that two things are alike."""
 SOLID = 0.10
@@ -79,7 +77,7 @@ def limits():
     found = {
         "parted": PARTED, "derivative": DERIVATIVE, "drift": DRIFT, "apart": APART, "kept": KEPT, "shifted": SHIFTED,
         "sigmas": SIGMAS, "chance": CHANCE, "solid": SOLID, "reference": REFERENCE, "f": TIMESTEP_FACTOR,
-        "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE, "large tree": LARGE_TREE,
+        "contacts": CONTACTS, "pressed": PRESSED, "alike": ALIKE,
         "reference velocity": FASTER, "reference spin": SPUN, "stepped": STEPPED,
     }  # fmt: skip
     return {f"limit.{name}": value for name, value in (found | CLOSED).items()}
@@ -316,17 +314,20 @@ def of_theory(table):
         "theory.grains": len(table),
         "theory.greatest": over.max(),
         "theory.excess": over.max() - 1.0,
-        "theory.above as grown": int((table["omega_first_loss"] > table["firm_bound"]).sum()),
         "theory.verdict": verdict((over <= 1.0 + SHIFTED).all()),
     }
+    balance = table["omega_first_loss"] / table["static_limit_at_loss"]
+    # BA let go while their arms still swing outward, which is no rest
+    rests = balance[table["type"] != "BA"]
+    values |= {"theory.static grains": len(rests), "theory.static verdict": verdict((rests <= 1.0 + SHIFTED).all())}
+    values |= {"theory.static greatest": rests.max(), "theory.static excess": rests.max() - 1.0}
+    values["theory.static swinging"] = balance.max() - 1.0
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
-    trees = table["type"] == "BA"
-    values["theory.trees least"] = over[trees].min()
-    for name, part in (("trees", trees), ("large trees", trees & (table["n_monomers"] >= LARGE_TREE))):
-        values[f"theory.{name}"] = int(part.sum())
-        values[f"theory.{name} on it"] = int((np.abs(over[part] - 1.0) < SHIFTED).sum())
-    return values
+        values[f"theory.{kind} static"] = median(balance[part.index])
+        values[f"theory.{kind} static on it"] = int((np.abs(balance[part.index] - 1.0) < SHIFTED).sum())
+    trees = over[table["type"] == "BA"]
+    return values | {"theory.trees": len(trees), "theory.trees on it": int((np.abs(trees - 1.0) < SHIFTED).sum())}
 
 
 def ratios(table, mark, times, by):

@@ -22,6 +22,7 @@ __all__ = [
     "least_bridge_cut",
     "least_plane_cut",
     "plane_normals",
+    "plane_of_rotation",
 ]
 
 
@@ -63,7 +64,7 @@ def cut_bound(grain, axis=None, *, directions=500):
     if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
         raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
     directions = whole_number(directions, "directions", 1)
-    u, v = _plane_of_rotation(grain, axis)
+    u, v = plane_of_rotation(grain, axis)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
     # Pull on each monomer at omega = 1 rad/s, in the plane normal to the axis.
     load = np.ascontiguousarray(grain.mass[:, None] * (position @ np.stack([u, v], axis=1)))
@@ -75,8 +76,8 @@ def cut_bound(grain, axis=None, *, directions=500):
     return math.sqrt(square)
 
 
-def _plane_of_rotation(grain, axis):
-    """Two unit vectors that span the plane normal to the axis."""
+def plane_of_rotation(grain, axis):
+    """Two unit vectors, (3,), that span the plane normal to the axis of `cut_bound`."""
     if axis is None:
         _, axes = principal_axes(grain.position, grain.mass, grain.radius)
         return axes[1], axes[2]

@@ -28,6 +28,7 @@ from ratd.experiments.spin_up.findings.pulled import of_pulled
 from ratd.experiments.spin_up.findings.radiation import of_radiation
 from ratd.experiments.spin_up.findings.scheme import of_scheme
 from ratd.experiments.spin_up.findings.shapes import of_shapes, of_stretch
+from ratd.experiments.spin_up.findings.static_limit import of_static_limits
 from ratd.experiments.spin_up.findings.studies import of_studies, studies
 from ratd.experiments.spin_up.pulled import read_pulled
 from ratd.experiments.spin_up.eq33 import fit_ensemble
@@ -52,6 +53,7 @@ from ratd.experiments.spin_up.plan import GRAINS, RUNS, load
 from ratd.experiments.spin_up.printed import PAPER_MEAN_RADIUS
 from ratd.experiments.spin_up.run_files import read_runs, read_table, run_row, runs
 from ratd.experiments.spin_up.shapes import read_shapes
+from ratd.experiments.spin_up.static_limit import read_limits
 from ratd.pictures.style import save
 from ratd.pipeline import blocks, io
 from ratd.pipeline.atomic import atomic, write_text
@@ -122,6 +124,8 @@ class Data(NamedTuple):
         Material of `OTHERS` -> the same as ``parameters``.
     pairs : list of pandas.DataFrame
         Of figure 10.
+    limits : pandas.DataFrame
+        Static limits of grains as grown.
     pulled : pandas.DataFrame
         Grains that were pulled apart.
     shapes : pandas.DataFrame
@@ -147,6 +151,7 @@ class Data(NamedTuple):
     tables: dict
     others: dict
     pairs: list
+    limits: pd.DataFrame
     pulled: pd.DataFrame
     shapes: pd.DataFrame
     lammps: dict
@@ -245,6 +250,7 @@ def read_data(data=DATA):
         grains=[grain for path in sorted((data / "figure1").glob("*.nc")) for grain in read_grains(path)],
         tables=tables,
         others={name: io.read(data / f"parameters_{name}.nc", "parameters").to_dataframe() for name in OTHERS},
+        limits=read_limits(data / "static_limits"),
         pulled=read_pulled(data / "pulled"),
         shapes=read_shapes(data / "shapes"),
         studies=studies(data, files[DRIVEN], printed),
@@ -283,6 +289,7 @@ def findings(data, fits):
     values |= beside.of_formulae(data.tables["formulae"]) | beside.of_printed_twist()
     values |= of_curve(data.driven, data.grown) | of_prediction(data.driven) | of_exponents_apart(data.driven)
     values |= beside.composition_tables()
+    values |= of_static_limits(data.limits, data.driven)
     values |= of_pulled(data.pulled, data.driven) | of_shapes(data.shapes)
     for letter, drive in (("d", DRIVEN), ("p", PRINTED)):
         values |= of_stretch(letter, data.files[drive])

@@ -14,9 +14,9 @@ import pandas as pd
 
 from ratd.aggregates.files import read_grains
 from ratd.base.jit import jit
-from ratd.experiments.spin_up.cut_bound import contact_strengths, plane_normals
+from ratd.experiments.spin_up.cut_bound import contact_strengths, plane_normals, plane_of_rotation
 from ratd.experiments.spin_up.printed import PAPER
-from ratd.geometry.shape import centre_of_mass, principal_axes
+from ratd.geometry.shape import centre_of_mass
 from ratd.laws.contact_constants import equilibrium_contact_radius, reduced_radius
 from ratd.laws.tangential import sliding_limit, sliding_stiffness
 from ratd.pipeline.kinds import Kind, as_dataset, entries, register
@@ -51,13 +51,15 @@ FIRM_BOUND_COLUMNS = {
 """Units and meaning of the columns of the table of firm bounds."""
 
 
-def firm_bound(grain, *, least_part=0.0, directions=500):
-    """Bound on the angular velocity about a_1 that an aggregate as it stands can hold, whatever its contacts do.
+def firm_bound(grain, axis=None, *, least_part=0.0, directions=500):
+    """Bound on the angular velocity that an aggregate as it stands can hold, whatever its contacts do.
 
     Parameters
     ----------
     grain : Grain
         Or anything with its attributes position, radius, mass, contacts and material.
+    axis : (3,) array_like, optional
+        As for `cut_bound`.
     least_part : float, optional
         Only cuts that leave this part of the mass or more on either side. With `QUARTER` the bound is that of the mark
         "a quarter" of a grain that is whole: above it the weakest of these cuts gives way, and no piece has 3/4 of it.
@@ -79,8 +81,7 @@ def firm_bound(grain, *, least_part=0.0, directions=500):
 
     What is needed is balance of forces. Balance of torques, which rolling contacts hardly help, asks for more.
     """
-    _, axes = principal_axes(grain.position, grain.mass, grain.radius)
-    across = np.stack([axes[1], axes[2]], axis=1)
+    across = np.stack(plane_of_rotation(grain, axis), axis=1)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
     load = np.ascontiguousarray(grain.mass[:, None] * (position @ across))
     share = grain.mass / grain.mass.sum()
