@@ -321,7 +321,11 @@ def of_theory(table):
     rests = balance[table["type"] != "BA"]
     values |= {"theory.static grains": len(rests), "theory.static verdict": verdict((rests <= 1.0 + SHIFTED).all())}
     values |= {"theory.static greatest": rests.max(), "theory.static excess": rests.max() - 1.0}
-    values["theory.static swinging"] = balance.max() - 1.0
+    swings = balance[table["type"] == "BA"]
+    values |= {
+        "theory.static swinging": swings.max() - 1.0,
+        "theory.BA static above": int((swings > 1.0 + SHIFTED).sum()),
+    }
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
         values[f"theory.{kind} static"] = median(balance[part.index])

@@ -2,6 +2,7 @@
 
 import math
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy.optimize import linprog
 
 from ratd.aggregates.grain import Grain
 from ratd.aggregates.growth import grow_with_radii
+from ratd.base.errors import InputError
 from ratd.base.materials import get_material
 from ratd.experiments.spin_up.firm_bound import firm_bound
 from ratd.experiments.spin_up.static_limit import contact_limits, static_limit
@@ -117,6 +119,25 @@ def test_it_is_that_of_the_obvious_programme(type, seed):
         assert limit == pytest.approx(math.sqrt(obvious(grain, axis)), rel=1e-6)
         assert limit < OCTAGON**0.5 * firm_bound(grain, axis=axis)
     assert firm_bound(grain, axis=axes[0]) == pytest.approx(firm_bound(grain), rel=1e-12)
+
+
+def test_off_a_principal_axis_the_grain_tips_over_whichever_monomer_is_the_first():
+    grain = small_grain("BAM2", 14, 3)
+    order = np.random.default_rng(0).permutation(grain.n_monomers)
+    other = Grain(grain.position[order], grain.radius[order], grain.material)
+    limits = [static_limit(each, axis=[0.3, 0.5, 0.8]) for each in (grain, other)]
+    assert limits[0] == pytest.approx(limits[1], rel=1e-6)
+
+
+def test_what_is_no_grain_or_has_no_contacts_is_one_sentence():
+    with pytest.raises(InputError, match="grain is a str"):
+        static_limit("BAM2")
+    quartz = get_material("q-S")
+    lonely = SimpleNamespace(
+        position=np.zeros((1, 3)), radius=np.ones(1), mass=np.ones(1), contacts=np.empty((0, 2), int), material=quartz
+    )
+    with pytest.raises(InputError, match="has no contacts"):
+        static_limit(lonely)
 
 
 def test_trees_hold_less_than_grains_whose_monomers_have_three_contacts():

@@ -28,6 +28,8 @@ __all__ = ["KIND", "contact_limits", "read_limits", "static_limit"]
 
 UNKNOWNS = 6
 """Of a contact: pull along the line of centres, two forces across it, two torques that roll, one that twists."""
+REACTIONS = 6
+"""Of the grain as a rigid body: accelerations along and about three axes. About a principal axis there are none."""
 
 KIND = register(
     "static_limits",
@@ -63,7 +65,7 @@ def static_limit(grain, axis=None):
     grain : Grain
         Or anything with its attributes position, radius, mass, contacts and material.
     axis : (3,) array_like, optional
-        As for `cut_bound`, but a principal axis.
+        As for `cut_bound`. About an axis that is not a principal one the grain is taken to tip over as a rigid body.
 
     Returns
     -------
@@ -72,6 +74,8 @@ def static_limit(grain, axis=None):
 
     Raises
     ------
+    InputError
+        If the grain is none, or has no contacts.
     RuntimeError
         If the linear programme is not solved.
 
@@ -79,37 +83,40 @@ def static_limit(grain, axis=None):
     -----
     Sideways forces and rolling torques are held in a regular octagon around the circle of their limit, so that the
     limit is above the exact one by 1/cos(pi/8) = 1.08 at most, in omega squared. The force of a contact acts on the
-    line of centres, which it divides as the radii are; the law has it at a_i from monomer i, which differs by half of
-    the overlap. An aggregate that rolls or stretches comes to stand in another way, and then has another limit: loose
-    trees turn beyond theirs by far.
+    line of centres, which it divides as the radii are. The law of `ratd.laws.jkr` holds a little more: sideways by the
+    overlap over the distance, below 1 %, and where it has rolled by xi the sliding force twists with that lever. Where
+    that was granted to all contacts the limit rose by 5 % at most. An aggregate that rolls or stretches comes to stand
+    in another way, and then has another limit: loose trees turn beyond theirs by far.
     """
     # not at the head: scipy is slow to import, and pages and jobs that need no limit would wait for it
     from scipy.optimize import linprog
     from scipy.sparse import vstack
 
-    pull, *_ = limits = contact_limits(grain)
-    force, length = pull.mean(), grain.radius.mean()
-    pull, slide, roll, twist = (
-        each / unit for each, unit in zip(limits, (force, force, force * length, force * length), strict=True)
-    )
+    if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
+        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
+    if not len(grain.contacts):
+        raise InputError("the grain has no contacts, and nothing that could give way.")
+    force, length = contact_limits(grain)[0].mean(), grain.radius.mean()
+    units = force, force, force * length, force * length
+    pull, slide, roll, twist = (limit / unit for limit, unit in zip(contact_limits(grain), units, strict=True))
     balance, load = _balance(grain, length, np.stack(plane_of_rotation(grain, axis)))
     top = np.column_stack([pull, slide, slide, roll, roll, twist])
     bottom = np.column_stack([np.full(len(pull), -np.inf), -top[:, 1:]])
+    free = [(None, None)] * REACTIONS
     corners = [_corners(len(pull), first, limit) for first, limit in ((1, slide), (3, roll))]
-    unit = np.abs(load).sum()
+    scale = np.abs(load).sum()
     answer = linprog(
-        np.append(np.zeros(top.size), -1.0),
-        A_ub=vstack([rows for rows, _ in corners]).tocsr(),
+        np.append(np.zeros(balance.shape[1]), -1.0),
+        A_ub=vstack([sides for sides, _ in corners]).tocsr(),
         b_ub=np.concatenate([limit for _, limit in corners]),
-        # what all monomers but one are in balance with, the last one is too: a principal axis leaves no net torque
-        A_eq=vstack([balance.T, load[None] / unit]).T.tocsr()[6:],
-        b_eq=np.zeros(len(load) - 6),
-        bounds=[*zip(bottom.ravel(), top.ravel(), strict=True), (0.0, None)],
+        A_eq=vstack([balance.T, load[None] / scale]).T.tocsr(),
+        b_eq=np.zeros(len(load)),
+        bounds=[*zip(bottom.ravel(), top.ravel(), strict=True), *free, (0.0, None)],
         method="highs-ipm",
     )
     if answer.status != 0:
         raise RuntimeError(f"the static limit of {len(grain.radius)} monomers was not found: {answer.message}")
-    return math.sqrt(answer.x[-1] * force / unit)
+    return math.sqrt(answer.x[-1] * force / scale)
 
 
 def contact_limits(grain):
@@ -139,10 +146,10 @@ def contact_limits(grain):
 def _balance(grain, length, plane):
     """Forces and torques [in units of force and force times `length`] on monomers.
 
-    Returns the sparse matrix that makes them from the unknowns of the contacts, (6 n, `UNKNOWNS` k), and those of the
-    centrifugal force at 1 rad/s, (6 n,) [kg m].
+    Returns the sparse matrix that makes them from the unknowns of the contacts and the reactions of the grain, (6 n,
+    `UNKNOWNS` k + `REACTIONS`), and those of the centrifugal force at 1 rad/s, (6 n,) [kg m].
     """
-    from scipy.sparse import coo_array
+    from scipy.sparse import coo_array, hstack
 
     n, k = len(grain.radius), len(grain.contacts)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
@@ -156,7 +163,7 @@ def _balance(grain, length, plane):
     across /= np.linalg.norm(across, axis=1)[:, None]
     frame = normal, across, np.cross(normal, across)
     radii = grain.radius[grain.contacts]
-    rows, columns, values = [], [], []
+    places, columns, values = [], [], []
     # what the first monomer of a contact feels; the second feels the opposite, but for the sign of its lever
     for end, sign in ((0, 1.0), (1, -1.0)):
         lever = (radii[:, end] * distance / (radii.sum(axis=1) * length))[:, None]
@@ -166,11 +173,22 @@ def _balance(grain, length, plane):
             felt[:, kind, 3:] = lever * np.cross(normal, frame[kind])
         for kind, direction in ((3, frame[1]), (4, frame[2]), (5, normal)):
             felt[:, kind, 3:] = sign * direction
-        rows.append(np.broadcast_to(6 * grain.contacts[:, end, None, None] + np.arange(6), felt.shape).ravel())
+        places.append(np.broadcast_to(6 * grain.contacts[:, end, None, None] + np.arange(6), felt.shape).ravel())
         columns.append(np.broadcast_to(np.arange(UNKNOWNS * k).reshape(k, UNKNOWNS, 1), felt.shape).ravel())
         values.append(felt.ravel())
-    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    return coo_array(entries, shape=(6 * n, UNKNOWNS * k)).tocsr(), load.ravel()
+    entries = np.concatenate(values), (np.concatenate(places), np.concatenate(columns))
+    return hstack([coo_array(entries, shape=(6 * n, UNKNOWNS * k)), _reactions(grain, position, length)]), load.ravel()
+
+
+def _reactions(grain, position, length):
+    """Forces and torques on monomers at unit accelerations of the grain along and about each axis, (6 n, 6)."""
+    felt = np.zeros((len(grain.radius), 6, REACTIONS))
+    share = grain.mass / grain.mass.mean()
+    for axis, along in enumerate(np.eye(3)):
+        felt[:, axis, axis] = share
+        felt[:, :3, 3 + axis] = share[:, None] * np.cross(along, position / length)
+        felt[:, 3 + axis, 3 + axis] = share * 0.4 * (grain.radius / length) ** 2
+    return felt.reshape(-1, REACTIONS)
 
 
 def _corners(k, first, limit):
@@ -181,7 +199,7 @@ def _corners(k, first, limit):
     signs = np.repeat([(1, 1), (1, -1), (-1, 1), (-1, -1)], k, axis=0) / math.sqrt(2.0)
     columns = UNKNOWNS * contact[:, None] + first + np.arange(2)
     entries = signs.ravel(), (np.repeat(np.arange(4 * k), 2), columns.ravel())
-    return coo_array(entries, shape=(4 * k, UNKNOWNS * k + 1)), np.tile(limit, 4)
+    return coo_array(entries, shape=(4 * k, UNKNOWNS * k + REACTIONS + 1)), np.tile(limit, 4)
 
 
 def read_limits(folder):
