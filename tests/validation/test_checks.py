@@ -120,15 +120,16 @@ def test_theory(tmp_path):
     io.write(tmp_path / "a.nc", as_dataset(rows, theory.KIND), theory.KIND)
 
 
-def test_arms_that_swing_outward_come_near_their_static_limit_if_the_spin_up_is_slow():
+@pytest.mark.parametrize(("nm", "seed", "above"), [(100, 4, 0.01), (200, 2, 0.05)])
+def test_arms_that_swing_outward_come_near_their_static_limit_if_the_spin_up_is_slow(nm, seed, above):
     """By default they come after omega, against the drag of the scheme; the loss itself is hardly moved."""
-    grain, found = grow("BA", 200e-9, "q-S", 2), {}
-    for name, how in {"usual": {}, "slow": {"pace": 0.005, "unrest": 0.005}}.items():
+    grain, found = grow("BA", nm * 1e-9, "q-S", seed), {}
+    for name, how in {"usual": {}, "slow": {"pace": 0.0025, "unrest": 0.0025}}.items():
         run, last = theory.followed(grain, **how)
         loss = disruption(run)["omega_first_loss"].item()
         found[name] = loss, loss / static_limit(last, axis=theory.AXIS)
-    assert found["usual"][1] > 1.1
-    assert 0.98 < found["slow"][1] < 1.03
+    assert found["usual"][1] > 1.09
+    assert 0.99 < found["slow"][1] < 1.0 + above
     assert found["slow"][0] == pytest.approx(found["usual"][0], rel=0.015)
 
 
