@@ -318,20 +318,28 @@ def of_theory(table):
     }
     balance = table["omega_first_loss"] / table["static_limit_at_loss"]
     # BA let go while their arms still swing outward, which is no rest
-    rests = balance[table["type"] != "BA"]
-    values |= {"theory.static grains": len(rests), "theory.static verdict": verdict((rests <= 1.0 + SHIFTED).all())}
-    values |= {"theory.static greatest": rests.max(), "theory.static excess": rests.max() - 1.0}
-    swings = balance[table["type"] == "BA"]
+    trees = table["type"] == "BA"
+    rests, swings = balance[~trees], balance[trees]
     values |= {
+        "theory.static grains": len(rests),
+        "theory.static verdict": verdict((rests <= 1.0 + SHIFTED).all()),
+        "theory.static greatest": rests.max(),
+        "theory.static excess": rests.max() - 1.0,
         "theory.static swinging": swings.max() - 1.0,
         "theory.BA static above": int((swings > 1.0 + SHIFTED).sum()),
+        "theory.trees": len(swings),
+        "theory.trees on it": _at_one(over[trees]),
     }
     for kind, part in table.groupby("type"):
         values[f"theory.{kind} at loss"] = median(over[part.index])
         values[f"theory.{kind} static"] = median(balance[part.index])
-        values[f"theory.{kind} static on it"] = int((np.abs(balance[part.index] - 1.0) < SHIFTED).sum())
-    trees = over[table["type"] == "BA"]
-    return values | {"theory.trees": len(trees), "theory.trees on it": int((np.abs(trees - 1.0) < SHIFTED).sum())}
+        values[f"theory.{kind} static on it"] = _at_one(balance[part.index])
+    return values
+
+
+def _at_one(ratio):
+    """How many ratios are 1 within `SHIFTED`."""
+    return int((np.abs(ratio - 1.0) < SHIFTED).sum())
 
 
 def ratios(table, mark, times, by):

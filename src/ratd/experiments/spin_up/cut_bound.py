@@ -61,8 +61,6 @@ def cut_bound(grain, axis=None, *, directions=500):
     It is meant for the aggregate as it stands; contacts made while it deforms can raise it. A contact that is loaded at
     a slant holds more than F_C along the load: see `firm_bound`.
     """
-    if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
-        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
     directions = whole_number(directions, "directions", 1)
     u, v = plane_of_rotation(grain, axis)
     position = grain.position - centre_of_mass(grain.position, grain.mass)
@@ -77,7 +75,9 @@ def cut_bound(grain, axis=None, *, directions=500):
 
 
 def plane_of_rotation(grain, axis):
-    """Two unit vectors, (3,), that span the plane normal to the axis of `cut_bound`."""
+    """Two unit vectors, (3,), that span the plane normal to the axis of `cut_bound`; refuses what is no grain."""
+    if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
+        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
     if axis is None:
         _, axes = principal_axes(grain.position, grain.mass, grain.radius)
         return axes[1], axes[2]

@@ -92,14 +92,13 @@ def static_limit(grain, axis=None):
     from scipy.optimize import linprog
     from scipy.sparse import vstack
 
-    if not all(hasattr(grain, name) for name in ("position", "radius", "mass", "contacts", "material")):
-        raise InputError(f"grain is a {type(grain).__name__}; it must be a ratd.Grain.")
+    plane = np.stack(plane_of_rotation(grain, axis))
     if not len(grain.contacts):
         raise InputError("the grain has no contacts, and nothing that could give way.")
     force, length = contact_limits(grain)[0].mean(), grain.radius.mean()
     units = force, force, force * length, force * length
     pull, slide, roll, twist = (limit / unit for limit, unit in zip(contact_limits(grain), units, strict=True))
-    balance, load = _balance(grain, length, np.stack(plane_of_rotation(grain, axis)))
+    balance, load = _balance(grain, length, plane)
     top = np.column_stack([pull, slide, slide, roll, roll, twist])
     bottom = np.column_stack([np.full(len(pull), -np.inf), -top[:, 1:]])
     free = [(None, None)] * REACTIONS
